@@ -1,0 +1,27 @@
+"""Costs of what may have happened to a page on its way to a text, in wrong characters.
+
+A cost is a negative log-likelihood in units of that of one character read or typed as another that
+does not look like it. The reading with the least sum is taken; none of them is evidence by itself.
+"""
+
+WRONG = 1.0
+"""A character for another: the unit."""
+ALIKE = 0.3
+"""A character for one that looks like it."""
+RESPELLED = 0.1
+"""A number written otherwise than Applesoft prints it: zeros added, digits moved."""
+LOST = 0.6
+"""A printed character, or a result, that is not in the text."""
+FOREIGN = 0.5
+"""A character, or a blank within a word or number, that the program does not print there."""
+LOST_ROW = 2.0
+"""A whole row that is not in the text: less than its characters."""
+BACKWARD = 1.0
+"""A label further up the page than the one before it."""
+PASSED = 0.03
+"""A label of the page passed over between two that were read."""
+OTHER_LABEL = 1.15
+"""A label in the place of another that does not look like it: between a step back by one row and a
+label printed twice."""
+CONTRADICTED = 3.0
+"""A result that was read as another than the program prints."""

@@ -1,0 +1,148 @@
+"""Numbers as printed and as typed: what a damaged one may be, and what prints like another."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from decimal import Decimal
+from functools import lru_cache
+from itertools import product
+
+from ..apple.applesoft import decimaltext
+from ..apple.applesoft.errorcodes import ApplesoftError
+from ..apple.applesoft.real import divide, multiply, rounded, to_stored
+from .costs import ALIKE, RESPELLED, WRONG
+from .glyphs import LOOKALIKES
+
+PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0-9]{1,2})?")
+"""A number as Applesoft prints it."""
+TYPED = re.compile(r"[-+]?(?=\.?[0-9])[0-9]*\.?[0-9]*(?:E[-+]?[0-9]{1,2})?")
+"""A number as it can be typed."""
+RETYPED = re.compile(r"^[-+]?0.|[.][0-9]*0$|^[-+]?[.]00|^[+]|[.]$|^-?[0-9]{10}")
+"""Marks of a number that people wrote: a zero or plus sign in front, zeros behind, no exponent."""
+NUMBER_CHARS = "0123456789.-"
+MAX_READINGS = 300
+"""Texts that a damaged number, or the row of angles, may be: the cheapest ones."""
+_RADIANS = rounded(divide(decimaltext.number("3.14159265"), decimaltext.number("180")))
+
+
+@lru_cache(maxsize=50_000)
+def stored_and_printed(text: str, is_angle: bool = False) -> tuple[bytes, str] | None:
+    """Return what the Apple stores of a typed number, and what it prints.
+
+    Parameters
+    ----------
+    text : str
+        The number as typed.
+    is_angle : bool, default False
+        True for an angle, which line 300 turns into radians and line 600 back.
+
+    Returns
+    -------
+    tuple of bytes and str, or None
+        None if the number is too large.
+    """
+    try:
+        value = printed = rounded(decimaltext.number(text))
+        if is_angle:
+            value = rounded(multiply(value, _RADIANS))
+            printed = rounded(divide(value, _RADIANS))
+        return to_stored(value), decimaltext.write(printed)
+    except (ApplesoftError, ValueError):
+        return None
+
+
+@lru_cache(maxsize=20_000)
+def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
+    """Return typed texts that print as a given text does, the shortest first.
+
+    Each is stored as other bits. Parameters as for `stored_and_printed`.
+    """
+    try:
+        value = Decimal(printed)
+    except ArithmeticError:
+        return ()
+    digits = len(value.as_tuple().digits)
+    last_place = Decimal(1).scaleb(value.adjusted() - 8) if digits == 9 else Decimal(0)
+    steps = [Decimal(k) for k in (1, 2, 3)] + [Decimal(k) / 10 for k in range(1, 10)]
+    shorter = [Decimal(f"{value:.{k}E}") for k in range(digits - 1)]
+    texts = [
+        f"{number.normalize():f}"
+        for number in shorter
+        if abs(number - value) <= abs(value) * Decimal("5e-8")
+    ]
+    plain = f"{value:f}"
+    texts += [f"{value.normalize():f}"]
+    texts += [plain + "." * ("." not in plain) + "0" * k for k in (1, 2, 3)]
+    texts += [
+        f"{(value + sign * step * last_place).normalize():f}" for step in steps for sign in (1, -1)
+    ]
+    by_bits: dict[bytes, str] = {}
+    for text in [*texts, printed]:
+        short = re.sub(r"^(-?)0\.", r"\1.", text)
+        stored = stored_and_printed(short, is_angle)
+        if stored and stored[1] == printed:
+            by_bits.setdefault(stored[0], short)
+    return tuple(by_bits.values())
+
+
+def is_same_value(first: str, second: str) -> bool:
+    """Return True if the Apple stores two typed texts as the same number."""
+    stored = [stored_and_printed(text) if TYPED.fullmatch(text) else None for text in (first, second)]
+    return stored[0] is not None and stored[1] is not None and stored[0][0] == stored[1][0]
+
+
+def as_printed(text: str) -> str:
+    """Return a number that people wrote as Applesoft prints it; another text unchanged."""
+    if not RETYPED.search(text) or not TYPED.fullmatch(text):
+        return text
+    printed = stored_and_printed(text)
+    return printed[1] if printed and Decimal(printed[1]) == Decimal(text) else text
+
+
+@lru_cache(maxsize=4000)
+def readings(chars: str) -> dict[str, float]:
+    """Return the printed texts that a number's characters may be, with the cost of each.
+
+    Characters of numbers are themselves, others are look-alikes of some or dirt; "?" is any digit.
+    """
+    if PRINTED.fullmatch(printed := as_printed(chars)):
+        return {printed: RESPELLED * (printed != chars)}
+    ways: list[tuple[str, float]] = [("", 0.0)]
+    for char in chars:
+        options = [(char, 0.0)] if char in "0123456789.-E" else []
+        if char == "+":
+            options = [("", RESPELLED), ("+", RESPELLED)]
+        elif not options or char == "E":
+            options += [(digit, ALIKE) for digit in NUMBER_CHARS if char in LOOKALIKES[digit]]
+            options += [(digit, 2 * ALIKE) for digit in "0123456789" if char == "?"]
+            options.append(("", 2 * ALIKE))
+        elif char in ".-":
+            options.append(("", 3 * ALIKE))
+        longer = ((text + one, cost + more) for (text, cost), (one, more) in product(ways, options))
+        ways = sorted(longer, key=lambda way: way[1])[:MAX_READINGS]
+    texts: dict[str, float] = {}
+    for text, cost in ways:
+        printed = as_printed(text)
+        if PRINTED.fullmatch(printed):
+            texts.setdefault(printed, cost + RESPELLED * (printed != text))
+    return texts
+
+
+def slips(text: str) -> Iterator[tuple[str, float]]:
+    """Yield the printed numbers one slip from another, with the cost of the slip.
+
+    A slip replaces, loses, adds or exchanges characters.
+    """
+    seen = {text}
+    for k in range(len(text) + 1):
+        before, char, behind = text[:k], text[k : k + 1], text[k + 1 :]
+        variants = [(before + new + char + behind, WRONG + RESPELLED) for new in NUMBER_CHARS]
+        if char:
+            variants += [(before + new + behind, WRONG) for new in NUMBER_CHARS]
+            variants.append((before + behind, WRONG + RESPELLED))
+            variants.append((before + behind[:1] + char + behind[1:], WRONG + RESPELLED))
+        for variant, cost in variants:
+            if variant not in seen and PRINTED.fullmatch(variant) and as_printed(variant) == variant:
+                seen.add(variant)
+                yield variant, cost

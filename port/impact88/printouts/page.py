@@ -1,0 +1,146 @@
+"""The program's page: its rows as a template, and the cells that a text is aligned with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+ROWS = (
+    "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?{REPLY_A}",
+    "ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?{REPLY_B}",
+    "MA= {MA} MB= {MB} IA= {IA} IB= {IB}",
+    "DA= {DA} DB= {DB}",
+    " PA PB TA TB GA",
+    " {PA}      {PB}      {TA}      {TB}      {GA}",
+    "UX= {UX} UY= {UY} WA= {WA} XA= {XA} YA= {YA}",
+    "VX= {VX} VY= {VY} WB= {WB} XB= {XB} YB= {YB}",
+    " E= {E} MU= {MUP} EM= {EM}",
+    "INITIAL KE= {KI} KE LOSS= {LOSS} %",
+    "*****",
+    "VAX= {VAX} VAY= {VAY} (XA={XAF} YA= {YAF})",
+    "VBX= {VBX} VBY= {VBY} (XB={XBF} YB= {YBF})",
+    " WA= {WAF} WB= {WBF}",
+    "*****",
+)
+"""What lines 200 to 770 print, numbers in braces; blank lines are left out."""
+PROMPTS = (0, 1)
+HEADING = 4
+ANGLE_ROW = 5
+ASTERISKS = (10, 14)
+ANGLES = ("PA", "PB", "TA", "TB", "GA")
+REPLIES = {"REPLY_A": ("UX", "UY", "WA"), "REPLY_B": ("VX", "VY", "WB")}
+NAMES = tuple(re.findall(r"{(\w+)}", " ".join(ROWS[2:])))
+"""The printed numbers, in order."""
+INPUTS = tuple("MA MB IA IB DA DB PA PB TA TB GA UX UY WA VX VY WB E MUP EM".split())
+RESULTS = tuple(name for name in NAMES if name not in INPUTS)
+ROW_OF = {
+    name: row for row, text in enumerate(ROWS) for name in re.findall(r"{(\w+)}", text)
+} | {"ANGLES": ANGLE_ROW}
+"""Row of each number."""
+TITLES = tuple(
+    "asterisks" if row in ASTERISKS else " ".join(re.findall(r"[A-Za-z]+", re.sub("{.*?}", "", text)))[:24]
+    for row, text in enumerate(ROWS)
+)
+"""What a row is called in words: its labels."""
+TITLES = (*TITLES[:ANGLE_ROW], "five angles", *TITLES[ANGLE_ROW + 1 :])
+
+
+class Cell(NamedTuple):
+    """A place of the page.
+
+    Parameters
+    ----------
+    char : str
+        The printed character in capitals, "" for a slot and for what precedes a row.
+    kind : str
+        "between" (before a row), "slot" (a number) or "word" (a printed character).
+    name : str
+        The number to which it belongs.
+    row : int
+        Index in `ROWS`.
+    first : bool
+        True at the beginning of a word.
+    """
+
+    char: str
+    kind: str
+    name: str
+    row: int
+    first: bool = False
+
+
+def _cells_of(row: int, text: str) -> list[Cell]:
+    cells = [Cell("", "between", "", row)]
+    parts = re.findall(r"{\w+}|[A-Z]+|[^\sA-Z]", text)
+    for at, part in enumerate(parts):
+        is_behind = part in (")", "%")
+        neighbours = parts[at::-1] if is_behind else parts[at:]
+        name = next((text[1:-1] for text in neighbours if text.startswith("{")), "")
+        if part.startswith("{"):
+            cells.append(Cell("", "slot", name, row, True))
+        else:
+            cells += [Cell(char, "word", name, row, not k) for k, char in enumerate(part)]
+    return cells
+
+
+CELLS = tuple(
+    cell
+    for row, text in enumerate(ROWS)
+    for cell in _cells_of(row, "{ANGLES}" if row == ANGLE_ROW else text.upper())
+)
+"""The page with each number as one slot; the five angles share one."""
+
+
+class PrintedChar(NamedTuple):
+    """A character of a predicted page: its place, and the number it belongs to ("" for words)."""
+
+    row: int
+    column: int
+    char: str
+    name: str
+
+
+def print_page(fields: Mapping[str, str], replies: Mapping[str, str]) -> list[PrintedChar]:
+    """Return the characters of the page that has some numbers.
+
+    Parameters
+    ----------
+    fields : mapping of str to str
+        The printed numbers by name; rows without any are left out.
+    replies : mapping of str to str
+        The replies typed at the prompts, by name (`REPLIES`).
+
+    Returns
+    -------
+    list of PrintedChar
+        All characters but blanks, row by row (`ROWS`).
+    """
+    shown = {**fields, **replies}
+    chars = []
+    for row in printed_rows(shown):
+        column = 0
+        for part in re.split(r"({\w+})", ROWS[row]):
+            name = part[1:-1] if part.startswith("{") else ""
+            text = shown.get(name, "") if name else part
+            at = enumerate(text, column)
+            chars += [PrintedChar(row, k, char, name) for k, char in at if char != " "]
+            column += len(text)
+    return chars
+
+
+def printed_rows(shown: Mapping[str, str]) -> list[int]:
+    """Return the rows that a page with some numbers has."""
+    rows = {ROW_OF[name] for name in shown if name in ROW_OF}
+    rows |= {HEADING} if ANGLE_ROW in rows else set()
+    rows |= {ASTERISKS[0]} if "VAX" in shown else set()
+    rows |= {ASTERISKS[1]} if "YBF" in shown else set()
+    return sorted(rows)
+
+
+def page_text(chars: list[PrintedChar]) -> str:
+    """Return a page as text, a line for each row."""
+    lines: dict[int, str] = {}
+    for one in chars:
+        lines[one.row] = lines.get(one.row, "").ljust(one.column) + one.char
+    return "\n".join(lines.values())

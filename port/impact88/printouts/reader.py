@@ -1,0 +1,515 @@
+"""The printouts of a text: where each number stands, which label owns it, and what it may be.
+
+Labels read exactly are anchors (`labels`). Each owns the number that follows it; what lies between
+two anchors is aligned with the cells between them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import accumulate, groupby, pairwise
+from math import inf
+
+import numpy as np
+
+from .align import Aligner
+from .costs import ALIKE, WRONG
+from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of, glyphs_of, split_at_gaps
+from .labels import LABELS, WORDS, Anchor, Label, find_anchors, find_labels, is_note
+from .numerals import MAX_READINGS, PRINTED, as_printed, readings
+from .page import ANGLE_ROW, ANGLES, ASTERISKS, CELLS, HEADING, NAMES, PROMPTS, REPLIES, ROW_OF, ROWS
+
+OWNED = re.compile(
+    r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:])"
+)
+"""A number in one piece behind a label."""
+PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
+ENDING = re.compile(r"ZERODETERMINANT|\?[A-Z']{5,30}ERROR(?:IN[0-9]+)?")
+MIN_NUMBERS = 3
+"""Numbers, behind two letters of labels each, that make a text a printout."""
+PAGE_STEP = 5
+"""Rows up the page from which a line begins another printout."""
+MAX_ANGLE_GLYPHS = 60
+"""Characters of the row of angles that are read."""
+MAX_NUMBER = 16
+"""Characters of a damaged angle."""
+MAX_PARTS = 10
+"""Readings of each of the five."""
+FIRST = Label("", "", -1, -1, 0)
+LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
+TWINS = {name: name + "F" for name in NAMES if name + "F" in NAMES}
+TWINS |= {twin: name for name, twin in TWINS.items()}
+"""Numbers whose label is on two rows."""
+_SLOT_CELLS = {cell.name: j for j, cell in enumerate(CELLS) if cell.kind == "slot"}
+_MANY = ("ANGLES", *REPLIES)
+"""Slots of several numbers."""
+
+
+@dataclass
+class Slot:
+    """What stands in the place of a number.
+
+    Parameters
+    ----------
+    glyphs : list of Glyph
+        Its characters.
+    label : str
+        The label that owns it: "exact", "damaged" or "" for none.
+    is_torn : bool
+        True if a blank, or a character of something else, is in it.
+    """
+
+    glyphs: list[Glyph]
+    label: str
+    is_torn: bool = False
+
+    @property
+    def text(self) -> str:
+        """The characters, in capitals and without blanks."""
+        return chars_of(self.glyphs)
+
+    @property
+    def is_clean(self) -> bool:
+        """True for a number in one piece behind an exact label."""
+        is_number = PRINTED.fullmatch(as_printed(self.text)) and self.text[-1:] != "."
+        return self.label == "exact" and not self.is_torn and bool(is_number)
+
+
+@dataclass
+class Reading:
+    """What was read of one printout.
+
+    Parameters
+    ----------
+    text : str
+        The whole text; offsets of glyphs refer to it.
+    slots : dict of str to Slot
+        What stands in the place of each number, and of the two replies.
+    angle_rows : list of (texts, cost)
+        What the row of angles may be.
+    chars : dict of int to Glyph
+        The glyph of each cell of a word.
+    foreign : list of lists of Glyph
+        What belongs to no cell.
+    replies : dict of str to str
+        The numbers typed at the prompts, by name.
+    repeated : list of (name, Slot)
+        Numbers that were read once more.
+    disorder : list of (row, Glyph)
+        Rows out of order or read once more, and where.
+    ending : str
+        The message that ended the program, without blanks.
+    """
+
+    text: str
+    slots: dict[str, Slot] = field(default_factory=dict)
+    angle_rows: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
+    chars: dict[int, Glyph] = field(default_factory=dict)
+    foreign: list[list[Glyph]] = field(default_factory=list)
+    replies: dict[str, str] = field(default_factory=dict)
+    repeated: list[tuple[str, Slot]] = field(default_factory=list)
+    disorder: list[tuple[int, Glyph]] = field(default_factory=list)
+    ending: str = ""
+
+    @property
+    def is_printout(self) -> bool:
+        """True if most of what stands in the places of numbers is one, behind labels."""
+        if self.ending and "REPLY_A" in self.slots:
+            return True
+        letters = sum(
+            CELLS[j].row not in PROMPTS and CELLS[j].char == glyph.char and glyph.char.isalpha()
+            for j, glyph in self.chars.items()
+        )
+        texts = [as_printed(slot.text) for slot in self.slots.values()]
+        numbers = sum(bool(PRINTED.fullmatch(text)) for text in texts)
+        is_enough = numbers >= MIN_NUMBERS and letters >= 2 * MIN_NUMBERS
+        return is_enough and 2 * numbers >= len(self.slots)
+
+    def readings(self, name: str) -> dict[str, float]:
+        """Return the printed texts that a number may be, with their costs."""
+        if name not in self.slots:
+            return {}
+        slot = self.slots[name]
+        texts = dict(readings(slot.text))
+        if slot.is_torn:
+            texts = {text: cost + ALIKE for text, cost in texts.items()}
+            for text, cost in readings(chars_of(next(split_at_gaps(slot.glyphs)))).items():
+                texts.setdefault(text, cost + WRONG)
+        return texts
+
+    def span(self) -> tuple[int, int]:
+        """Return the offsets of the first and behind the last character of the page's own."""
+        glyphs = [*self.chars.values(), *(g for slot in self.slots.values() for g in slot.glyphs)]
+        offsets = [glyph.offset for glyph in glyphs]
+        return min(offsets), max(offsets) + 1
+
+
+def read_printouts(text: str) -> list[Reading]:
+    """Return the printouts in a text.
+
+    A printout ends where a line has a label of a row much further up the page.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    list of Reading
+        What was read of each.
+    """
+    glyphs = glyphs_of(text)
+    cuts = [*(k for k, glyph in enumerate(glyphs) if glyph.gap == LINE_GAP or not k), len(glyphs)]
+    pages: list[list[int]] = []  # first line, last line, first row, furthest row
+    for n, (a, b) in enumerate(pairwise(cuts)):
+        if not (rows := _rows_of(glyphs[a:b])):
+            continue
+        if not pages or pages[-1][3] - max(rows) >= PAGE_STEP:
+            pages.append([n, n, min(rows), min(rows)])
+        pages[-1][1], pages[-1][3] = n, max(pages[-1][3], min(rows))
+    printouts = []
+    for k, page in enumerate(pages):
+        above = pages[k - 1][1] + 1 if k else 0
+        below = pages[k + 1][0] if k + 1 < len(pages) else len(cuts) - 1
+        first = max(page[0] - 2 * page[2], above)
+        last = min(page[1] + 2 * (len(ROWS) - page[3]), below - 1)
+        reading = _Reader(text, glyphs[cuts[first] : cuts[last + 1]]).read()
+        line = glyphs[cuts[page[0] - 1] : cuts[page[0]]] if page[0] > above else []
+        if find_labels(line) and text.count("\n", line[-1].offset, glyphs[cuts[page[0]]].offset) < 2:
+            reading.foreign.append(line)  # a note right above the page
+        printouts.append(reading)
+    return [reading for reading in printouts if reading.is_printout]
+
+
+def _rows_of(line: Sequence[Glyph]) -> list[int]:
+    """Return the rows that share most labels with a line; none for a note."""
+    text = chars_of(line)
+    if PROMPT.search(text):
+        return [*PROMPTS]
+    if ENDING.match(text):
+        return [ASTERISKS[0]]
+    if is_note(line):
+        return []
+    texts = {text for text, *_ in find_labels(line)}
+    counts = Counter(label.row for label in LABELS if label.text in texts)
+    return [row for row, count in counts.items() if count == max(counts.values())]
+
+
+class _Reader:
+    """Reading of one printout's glyphs."""
+
+    def __init__(self, text: str, glyphs: Sequence[Glyph]) -> None:
+        self.reading = Reading(text)
+        self.glyphs = glyphs
+
+    def read(self) -> Reading:
+        """Return what was read."""
+        reading, glyphs = self.reading, self.glyphs
+        anchors = find_anchors(glyphs)
+        start = anchors[-1].stop if anchors else 0
+        if ending := ENDING.search(chars_of(glyphs), start):
+            reading.ending = ending[0]
+            glyphs = glyphs[: ending.start()]
+        used = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
+        owners = {_owner(anchor.label) for anchor in anchors}
+        used |= {j for name, j in _SLOT_CELLS.items() if name in owners}
+        before = Anchor(FIRST, "", 0, 0)
+        for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
+            cells = [j for j in _cells_between(before.label, anchor.label) if j not in used]
+            self._read_between(glyphs[before.stop : anchor.start], before, anchor.label, cells)
+            self._read_label(anchor)
+            if anchor.label.start <= before.label.start:
+                reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
+            before = anchor
+        self._split_replies()
+        self._split_angles()
+        return reading
+
+    def _read_label(self, anchor: Anchor) -> None:
+        """Give the glyphs of an anchor to the cells of its label."""
+        glyphs = self.glyphs[anchor.start : anchor.stop]
+        if glyphs and anchor.label.text:
+            *cells, last = range(anchor.label.start, anchor.label.stop)
+            self.reading.chars |= dict(zip(cells, glyphs[:-1], strict=False))
+            self.reading.chars[last] = glyphs[-1]
+
+    def _read_between(
+        self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]
+    ) -> None:
+        """Read what stands between two anchors: the number that the first owns, and the rest."""
+        owner = _owner(before.label)
+        is_exact = before.read == before.label.text
+        count = self._count_owned(glyphs, before.label, behind)
+        slots: dict[str, Slot] = {}
+        if count:
+            slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
+            slots[owner] = slot
+            rest = glyphs[count:]
+            if owner == "ANGLES":
+                head, *lines = split_at_gaps(slot.glyphs, LINE_GAP)
+                if lines and not head[0].gap == LINE_GAP:
+                    self.reading.foreign.append(head)  # behind the heading
+                    slot.glyphs = slot.glyphs[len(head) :]
+            elif owner not in REPLIES:
+                rest = _join_torn(slot, rest, before.label.row, cells)
+        else:
+            rest = glyphs
+            if owner:
+                cells = [_SLOT_CELLS[owner], *cells]
+        if rest:
+            slots = self._align(rest, cells, before.label, behind, is_exact and not count) | slots
+        for name, slot in slots.items():
+            self._add_slot(name, slot)
+
+    def _count_owned(self, glyphs: Sequence[Glyph], before: Label, behind: Label) -> int:
+        """Return how many glyphs are the number, or the numbers, of the label before them."""
+        if before.row == HEADING:
+            return len(glyphs) if behind.name == "UX" else _end_of_line(glyphs, len(ANGLES))
+        if before.row in PROMPTS:
+            is_next = behind.row == before.row + 1
+            return len(glyphs) if is_next or self.reading.ending else _end_of_line(glyphs, 1)
+        return _count_number(glyphs) if before.text.endswith("=") else 0
+
+    def _add_slot(self, name: str, slot: Slot) -> None:
+        """Add what stands in the place of a number, or a second such thing."""
+        slots = self.reading.slots
+        if name in slots and slot.is_clean and not slots[name].is_clean:
+            slots[name], slot = slot, slots[name]
+        if name in slots:
+            self.reading.repeated.append((name, slot))
+        else:
+            slots[name] = slot
+
+    def _align(
+        self,
+        glyphs: Sequence[Glyph],
+        cells: Sequence[int],
+        before: Label,
+        behind: Label,
+        is_owned: bool,
+    ) -> dict[str, Slot]:
+        """Align glyphs with cells; return the slots, and list what belongs to none.
+
+        A number without a label counts only if its line has as many numbers as places.
+        """
+        pairs = _aligner(tuple(cells)).align(glyphs) if cells else [(i, None) for i in range(len(glyphs))]
+        own: dict[str, list[int]] = {}
+        labelled: set[str] = {*_MANY}
+        foreign: set[int] = set()
+        last = ""
+        for i, j in pairs:
+            cell = CELLS[cells[j]] if j is not None else None
+            if cell:
+                last = cell.name if cell.kind == "slot" else ""
+            if i is None:
+                continue
+            if cell and cell.kind == "slot":
+                own[cell.name] = [i]
+            elif cell and cell.kind == "word":
+                self.reading.chars[cells[j or 0]] = glyphs[i]
+                if cell.char == glyphs[i].char != "=":
+                    labelled.add(cell.name)
+            elif not cell and last in own and (glyphs[i].gap < LINE_GAP or last in _MANY):
+                own[last].append(i)
+            else:
+                foreign.add(i)
+        slots: dict[str, Slot] = {}
+        for name, members in own.items():
+            _take_sign(glyphs, members, foreign)
+            places = sum(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells)
+            is_whole = _is_whole(glyphs, members)
+            is_single = is_whole and places == _count_numbers(glyphs, members, own)
+            label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in labelled)
+            if not label and not is_single:
+                foreign.update(members)
+                continue
+            text = chars_of([glyphs[i] for i in members])
+            if (note := WORDS.search(text)) and name not in _MANY:
+                foreign.update(members[note.start() :])
+                members = members[: note.start()]
+            slot = Slot([glyphs[i] for i in members], label, not is_whole)
+            slot.is_torn |= name not in _MANY and any(glyph.gap for glyph in slot.glyphs[1:])
+            if members:
+                slots[name] = slot
+        kept = _within_page(glyphs, foreign, before is FIRST, behind is LAST)
+        for _, run in groupby(enumerate(kept), lambda pair: pair[1] - pair[0]):
+            self.reading.foreign.append([glyphs[i] for _, i in run])
+        return slots
+
+    def _split_replies(self) -> None:
+        """Split the replies into their numbers."""
+        for reply, names in REPLIES.items():
+            if slot := self.reading.slots.get(reply):
+                texts = re.split("[,;]", slot.text)
+                if len(texts) == len(names) and all(texts):
+                    self.reading.replies |= dict(zip(names, texts, strict=True))
+
+    def _split_angles(self) -> None:
+        """Split the row of angles, which are read only if there are five."""
+        reading = self.reading
+        if row := reading.slots.pop("ANGLES", None):
+            words = [*split_at_gaps(row.glyphs)]
+            with_digits = [word for word in words if re.search("[0-9]", chars_of(word))]
+            numbers = [word for word in words if readings(chars_of(word))]
+            five = next((some for some in (with_digits, numbers) if len(some) == len(ANGLES)), None)
+            others = [word for word in words if five and word not in five]
+            if five and not any("-" in chars_of(word) for word in others):  # no sign apart
+                reading.slots |= {
+                    name: Slot(word, "exact") for name, word in zip(ANGLES, five, strict=True)
+                }
+                reading.foreign += others
+                words = five
+            reading.angle_rows = angle_rows([glyph for word in words for glyph in word])
+        repeated = reading.repeated
+        for k, (name, slot) in enumerate([*repeated]):
+            words = [*split_at_gaps(slot.glyphs)] if name == "ANGLES" else []
+            if len(words) == len(ANGLES):
+                repeated[k : k + 1] = [
+                    (angle, Slot(word, "exact")) for angle, word in zip(ANGLES, words, strict=True)
+                ]
+
+
+def _owner(label: Label) -> str:
+    """Return the number, or numbers, that follow a label."""
+    if label.row == HEADING:
+        return "ANGLES"
+    return label.name if label.text[-1:] in ("=", "?") else ""
+
+
+def _cells_between(before: Label, behind: Label) -> Iterator[int]:
+    """Yield the cells between two labels; of labels out of order those of their rows."""
+    if before.stop <= behind.start:
+        yield from range(before.stop, behind.start)
+        return
+    for j, cell in enumerate(CELLS):
+        is_behind_first = cell.row == before.row and j >= before.stop
+        if is_behind_first or (cell.row == behind.row and j < behind.start):
+            yield j
+
+
+def _end_of_line(glyphs: Sequence[Glyph], words: int) -> int:
+    """Return the end of the line that has the last of a number of words."""
+    count = 0
+    for at, glyph in enumerate(glyphs):
+        if at and glyph.gap == LINE_GAP and count >= words:
+            return at
+        count += glyph.gap > 0 or not at
+    return len(glyphs)
+
+
+def _count_number(glyphs: Sequence[Glyph]) -> int:
+    """Return how many glyphs are the number behind a label: a clean one, or a damaged word."""
+    word = next(split_at_gaps(glyphs), [])
+    text = chars_of(word)
+    if number := OWNED.match(text):
+        return number.end()
+    text = text.rstrip("()%")
+    if word and word[0].gap == LINE_GAP:
+        return 0
+    is_number = re.search("[0-9]", text) or (len(text) < 3 and text.strip(".-"))
+    return len(text) if is_number and readings(text) else 0
+
+
+def _join_torn(
+    slot: Slot, rest: Sequence[Glyph], row: int, cells: Sequence[int]
+) -> Sequence[Glyph]:
+    """Add the words with digits that follow a number to it, if no other number belongs there.
+
+    Returns what is left.
+    """
+    if any(CELLS[j].kind == "slot" and CELLS[j].row == row for j in cells):
+        return rest
+    count = 0
+    for word in split_at_gaps(rest):
+        if word[0].gap >= WIDE_GAP or not re.search("[0-9]", chars_of(word)):
+            break
+        count += len(word)
+    slot.glyphs += rest[:count]
+    slot.is_torn |= count > 0
+    return rest[count:]
+
+
+@lru_cache(maxsize=500)
+def _aligner(cells: tuple[int, ...]) -> Aligner:
+    return Aligner([CELLS[j] for j in cells])
+
+
+def _take_sign(glyphs: Sequence[Glyph], members: list[int], foreign: set[int]) -> None:
+    """Give a number the sign or point before it."""
+    at = members[0]
+    while at and (at - 1 in foreign or glyphs[at - 1].char == "=") and glyphs[at].gap < WIDE_GAP:
+        at -= 1
+    ahead = [i for i in range(at, members[0]) if i in foreign and glyphs[i].char in "-.~"]
+    members[:0] = ahead
+    foreign.difference_update(ahead)
+
+
+def _within_page(
+    glyphs: Sequence[Glyph], foreign: set[int], is_first: bool, is_last: bool
+) -> list[int]:
+    """Return the foreign glyphs without the lines above and below the page."""
+    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs])
+    own = [int(lines[i]) for i in range(len(glyphs)) if i not in foreign]
+    first = min([*own, int(lines[-1])]) if is_first else 0
+    last = max([*own, 0]) if is_last and not is_first else int(lines[-1])
+    return [i for i in sorted(foreign) if first <= lines[i] <= last]
+
+
+def _count_numbers(glyphs: Sequence[Glyph], members: list[int], own: dict[str, list[int]]) -> int:
+    """Return how many words with digits are on the line of a number, replies aside."""
+    replies = {i for reply in REPLIES for i in own.get(reply, ())}
+    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs])
+    line = [
+        glyph
+        for i, glyph in enumerate(glyphs)
+        if lines[i] == lines[members[0]] and i not in replies
+    ]
+    return sum(bool(re.search("[0-9]", chars_of(word))) for word in split_at_gaps(line))
+
+
+def _is_whole(glyphs: Sequence[Glyph], members: Sequence[int]) -> bool:
+    """Return True for glyphs that no other digit or point touches."""
+    a, b = members[0], members[-1] + 1
+    is_start = not a or glyphs[a].gap > 0 or glyphs[a - 1].char not in "0123456789."
+    return is_start and (b == len(glyphs) or glyphs[b].gap > 0 or not glyphs[b].char.isdigit())
+
+
+def angle_rows(row: Sequence[Glyph]) -> list[tuple[tuple[str, ...], float]]:
+    """Return the ways to read the row of angles as five numbers, the cheapest first.
+
+    Words are taken one by one; damaged ones may be cut in two, joined or, at the ends, passed over.
+    """
+    row = row[:MAX_ANGLE_GLYPHS]
+    words = [chars_of(word) for word in split_at_gaps(row)]
+    ends = [0, *accumulate(map(len, words))]
+    damaged = [not PRINTED.fullmatch(as_printed(word)) for word in words]
+    price = {end: 0.0 for end in ends}
+    joint = {end: WRONG for k, end in enumerate(ends[1:-1]) if damaged[k] or damaged[k + 1]}
+    for k, word in enumerate(words):
+        inner = range(ends[k] + 1, ends[k + 1]) if damaged[k] else ()
+        price |= {at: ALIKE + WRONG * (row[at].char != "-") for at in inner}
+    ways = {end: [(WRONG * k, ())] for k, end in enumerate(ends)}
+    for _ in ANGLES:
+        longer: dict[int, list[tuple[float, tuple[str, ...]]]] = {}
+        for a, heads in ways.items():
+            for b in filter(a.__lt__, price):
+                crossed = [joint.get(end, inf) for end in ends if a < end < b]
+                if b - a > MAX_NUMBER or inf in crossed:
+                    continue
+                more = price[b] + sum(crossed)
+                for text, cost in [*readings(chars_of(row[a:b])).items()][:MAX_PARTS]:
+                    longer.setdefault(b, []).extend(
+                        (head + cost + more, (*texts, text)) for head, texts in heads
+                    )
+        ways = {at: sorted(some)[:MAX_READINGS] for at, some in longer.items()}
+    rows: dict[tuple[str, ...], float] = {}
+    for k, end in enumerate(ends):
+        for cost, texts in ways.get(end, ()):
+            total = cost + WRONG * (len(words) - k)
+            rows[texts] = min(total, rows.get(texts, total))
+    return sorted(rows.items(), key=lambda item: item[1])[:MAX_READINGS]

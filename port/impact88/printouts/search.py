@@ -1,0 +1,268 @@
+"""The scene that a page comes from: combinations of what its inputs may be, replayed bit for bit.
+
+A scene costs what its inputs do, plus what it costs that each result it prints is the one that was
+read. The scene as read is tried first; where it leaves a result unexplained, the cheapest
+combinations of readings; then slips in single inputs of the best ones, as long as they explain more.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..program.vectorized import replay
+from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
+from .numerals import TYPED, readings, slips, spellings, stored_and_printed
+from .page import ANGLES, INPUTS, NAMES, RESULTS
+from .reader import Reading
+
+MAX_CANDIDATES = 10_000
+"""Combinations of readings that are replayed: .1 s."""
+MAX_OPTIONS = 40
+"""Texts that an input may be."""
+BEST = 3
+"""Scenes from which the search for slips goes on, and its rounds."""
+ZERO_DETERMINANT = "ZERO DETERMINANT"
+FINAL_SPINS = ("WAF", "WBF")
+
+Texts = dict[str, str]
+Option = tuple[tuple[str, ...], tuple[str, ...], float]
+"""Printed texts and typed texts of an input, or of the five angles, and their cost."""
+Columns = dict[tuple[str, ...], list[Option]]
+
+
+class Candidate(NamedTuple):
+    """Printed and typed texts of a scene's inputs, M, and their cost."""
+
+    printed: Texts
+    typed: Texts
+    M: str
+    cost: float
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """A scene that was replayed.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        Its inputs as believed.
+    mismatch : float
+        What its results cost.
+    scene : dict of str to str
+        The scene as typed.
+    fields : dict of str to str
+        The numbers that the program prints.
+    ending : str
+        The message that ends the program, "" for a normal end.
+    """
+
+    candidate: Candidate
+    mismatch: float
+    scene: Texts
+    fields: Texts
+    ending: str
+
+    @property
+    def cost(self) -> float:
+        """Cost of inputs and results."""
+        return self.candidate.cost + self.mismatch
+
+
+def opposite(text: str) -> str:
+    """Return a number's text with the other sign."""
+    return text[1:] if text.startswith("-") else "-" + text.removeprefix("+")
+
+
+def scene_name(name: str) -> str:
+    """Return the scene's name of an input on the page."""
+    return "MU" if name == "MUP" else name
+
+
+def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | None, list[str]]:
+    """Return the scene that explains a page at the least cost.
+
+    Parameters
+    ----------
+    reading : Reading
+        The page.
+    given : mapping of str to str
+        Inputs known from elsewhere, as typed, for those that the page lacks.
+
+    Returns
+    -------
+    tuple
+        The scene, None where inputs are missing; and the names of these.
+    """
+    columns: Columns = {(name,): _options(reading, name) for name in INPUTS if name not in ANGLES}
+    columns[ANGLES] = [
+        (row, typed, cost) for row, cost in reading.angle_rows if all(typed := _typed_angles(row))
+    ]
+    for names, options in columns.items():
+        texts = tuple(given.get(scene_name(name), "") for name in names)
+        stored = [stored_and_printed(text, names is ANGLES) for text in texts if text]
+        if not options and len(stored) == len(names):
+            options.append((tuple(one[1] for one in stored if one), texts, 0.0))
+    if missing := [name for names, options in columns.items() for name in names if not options]:
+        return None, missing
+    has_spins = any(name in reading.slots for name in FINAL_SPINS)
+    ms = [("6", 0.0), ("4", CONTRADICTED)] if has_spins else [("4", 0.0), ("6", ALIKE)]
+    if "M" in given:
+        ms = [(given["M"], 0.0)]
+    expected = {name: reading.readings(name) for name in RESULTS}
+    first = {names: options[:1] for names, options in columns.items()}
+    best = replay_candidates([*_combinations(first, ms, len(ms))], expected)
+    if best[0].mismatch >= CONTRADICTED:
+        best = replay_candidates([*_combinations(columns, ms, MAX_CANDIDATES)], expected)
+    as_read = best[0]
+    for _ in range(BEST):
+        if best[0].mismatch < CONTRADICTED:
+            break
+        edits = [edit for found in best for edit in _edits(found.candidate)]
+        more = replay_candidates(edits, expected)
+        if more[0].cost >= best[0].cost:
+            break
+        best = sorted([*best, *more], key=lambda found: found.cost)[:BEST]
+    # slips are believed only where they explain most of what differs
+    return (best[0] if 2 * best[0].mismatch <= as_read.mismatch else as_read), []
+
+
+def _typed_angles(row: Sequence[str]) -> tuple[str, ...]:
+    return tuple(next(iter(spellings(text, True)), "") for text in row)
+
+
+def _options(reading: Reading, name: str) -> list[Option]:
+    """Return what an input may be, the cheapest first: as printed, and as typed at the prompt."""
+    texts = dict(reading.readings(name))
+    reply = reading.replies.get(name, "")
+    typed = stored_and_printed(reply) if TYPED.fullmatch(reply) else None
+    more = ALIKE + LOST * bool(reading.slots.get(name))
+    for text in [typed[1]] if typed else readings(reply):
+        texts[text] = min(texts.get(text, more), more)
+    options: list[Option] = []
+    for text, cost in sorted(texts.items(), key=lambda item: item[1])[:MAX_OPTIONS]:
+        if typed and typed[1] == text:
+            options.append(((text,), (reply,), cost))
+        elif spelled := spellings(text):
+            options.append(((text,), (spelled[0],), cost))
+    return options
+
+
+def _combinations(
+    columns: Columns, ms: Sequence[tuple[str, float]], count: int
+) -> Iterator[Candidate]:
+    """Yield the cheapest combinations of options."""
+    ways: list[tuple[float, tuple[int, ...]]] = [(cost, (k,)) for k, (_, cost) in enumerate(ms)]
+    for options in columns.values():
+        ways = sorted(
+            (cost + option[2], (*way, k))
+            for (cost, way), (k, option) in product(ways, enumerate(options))
+        )[:count]
+    for cost, (m, *way) in ways:
+        printed: Texts = {}
+        typed: Texts = {}
+        for (names, options), k in zip(columns.items(), way, strict=True):
+            printed |= dict(zip(names, options[k][0], strict=True))
+            typed |= dict(zip(names, options[k][1], strict=True))
+        yield Candidate(printed, typed, ms[m][0], cost)
+
+
+def _edits(candidate: Candidate) -> Iterator[Candidate]:
+    """Yield a scene with one input typed otherwise that prints alike, or with one slip in it."""
+    printed, typed, m, cost = candidate
+    for name, text in printed.items():
+        texts = [*spellings(text, name in ANGLES)]
+        if name == "MUP":  # line 400 turns its sign, and -10 printed of a typed 10 is no pivot
+            texts.append(opposite(typed[name]))
+        for rank, other in enumerate(texts):
+            yield Candidate(printed, {**typed, name: other}, m, cost + PASSED * (1 + rank / 9))
+        for other, more in slips(text):
+            yield Candidate({**printed, name: other}, {**typed, name: other}, m, cost + more)
+
+
+def replay_candidates(
+    candidates: Sequence[Candidate], expected: Mapping[str, Mapping[str, float]]
+) -> list[Recovered]:
+    """Return the best candidates, replayed, the cheapest first.
+
+    Parameters
+    ----------
+    candidates : sequence of Candidate
+        Scenes.
+    expected : mapping of str to mapping of str to float
+        What each result may be, and the cost of each; an empty one for a result not read.
+    """
+    columns = {
+        name: [candidate.typed[name] for candidate in candidates] for name in INPUTS if name != "MUP"
+    }
+    columns["M"] = [candidate.M for candidate in candidates]
+    mu = np.array([candidate.typed["MUP"] for candidate in candidates], dtype="U40")
+    wanted = np.array([candidate.printed["MUP"] for candidate in candidates])
+    run = replay({**columns, "MU": mu.tolist()})
+    turned = (run.printed("MUP") != wanted) & (wanted != "0") & (run.printed("MUP") != "")
+    if turned.any():
+        mu[turned] = [opposite(text) for text in mu[turned].tolist()]
+        run = replay({**columns, "MU": mu.tolist()})
+    mismatch = CONTRADICTED * ((run.printed("MUP") != wanted) & (run.printed("MUP") != ""))
+    for name, costs in expected.items():
+        texts, back = np.unique(run.printed(name), return_inverse=True)
+        mismatch += np.array([_result_cost(text, costs) for text in texts.tolist()])[back]
+    total = mismatch + np.array([candidate.cost for candidate in candidates])
+    return [
+        _recovered(candidates[k], float(mismatch[k]), str(mu[k]), run, k)
+        for k in np.argsort(total, kind="stable")[:BEST].tolist()
+    ]
+
+
+def _result_cost(text: str, costs: Mapping[str, float]) -> float:
+    """Return what it costs that the program prints a result, "" for none."""
+    if costs:
+        return costs.get(text, CONTRADICTED)
+    return LOST if text else 0.0
+
+
+def _recovered(candidate: Candidate, mismatch: float, mu: str, run: Any, k: int) -> Recovered:
+    fields = {name: text for name in NAMES if (text := str(run.printed(name)[k]))}
+    scene = {name: candidate.typed[name] for name in INPUTS if name != "MUP"}
+    scene |= {"MU": mu, "M": candidate.M}
+    ending = ZERO_DETERMINANT if run.zero_determinant[k] else str(run.error[k])
+    return Recovered(candidate, mismatch, scene, fields, ending)
+
+
+def printed_fields(scene: Mapping[str, str]) -> Texts:
+    """Return the numbers that the program prints for a scene, by name."""
+    run = replay({name: [text] for name, text in scene.items()})
+    return {name: text for name in NAMES if (text := str(run.printed(name)[0]))}
+
+
+def unseen_digits(recovered: Recovered) -> dict[str, int]:
+    """Return the number of digits of each input that nothing else on the page confirms.
+
+    Parameters
+    ----------
+    recovered : Recovered
+        The scene of the page.
+
+    Returns
+    -------
+    dict of str to int
+        Digits of which another one leaves all results as they are, by input; none are left out.
+    """
+    names: list[str] = []
+    scenes: list[Texts] = []
+    for name in map(scene_name, INPUTS):
+        text = recovered.scene[name]
+        for k, char in enumerate(text.partition("E")[0]):
+            if char.isdigit():
+                other = text[:k] + str((int(char) + 1) % 10) + text[k + 1 :]
+                names.append(name)
+                scenes.append({**recovered.scene, name: other})
+    run = replay({name: [scene[name] for scene in scenes] for name in recovered.scene})
+    same = np.all([run.printed(n) == recovered.fields.get(n, "") for n in RESULTS], axis=0)
+    return dict(Counter(name for name, is_same in zip(names, same, strict=True) if is_same))

@@ -1,0 +1,565 @@
+"""The verdict on a printout, from the comparison of all that was read with the page of its scene.
+
+Everything that was not read as the program prints it is a `Finding` of one kind, at one place of
+the text. The verdict follows from the findings by `VERDICTS`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from enum import Enum
+from types import MappingProxyType
+from typing import NamedTuple
+
+from .glyphs import Glyph
+from .labels import LABELS
+from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
+from .page import (
+    ANGLES,
+    ASTERISKS,
+    CELLS,
+    INPUTS,
+    NAMES,
+    PROMPTS,
+    REPLIES,
+    ROW_OF,
+    TITLES,
+    Cell,
+    PrintedChar,
+    print_page,
+    printed_rows,
+)
+from .reader import TWINS, Reading, Slot, read_printouts
+from .search import Recovered, find_scene, scene_name, unseen_digits
+
+MACHINE_READ = 3
+"""Misread characters of labels and numbers from which a page counts as read by a machine."""
+BADLY_READ = 17
+"""Such characters from which a digit for another proves nothing."""
+MAX_ALTERED = 2
+"""Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
+MAX_READER_SLIPS = 3
+"""Numbers of a page to which a reader adds a character, or from which it loses one."""
+MAX_FOREIGN_DIGITS = 6
+"""Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
+_NO_NUMBER = re.compile("[^-0-9.E,+]")
+_WORDS = frozenset(re.findall("[A-Z]+", " ".join(label.text for label in LABELS if label.row > 1)))
+
+
+class Verdict(Enum):
+    """The verdicts, the gravest first."""
+
+    DIFFERS = "differs"
+    INCOMPLETE = "incomplete"
+    AS_READ = "identical as far as read"
+    IDENTICAL = "identical"
+
+
+class Kind(Enum):
+    """Kinds of findings."""
+
+    NUMBER = "another number"
+    LABEL = "another word in a label's place"
+    OPEN = "another number, on a page or for inputs read with doubt"
+    UNREAD = "number not read"
+    DOUBT = "number read with doubt"
+    MISREAD = "word or mark read otherwise"
+    LOST = "word or mark not read"
+    FOREIGN = "text that the program does not print"
+    ROW_LOST = "row not read"
+    ROW_TWICE = "row printed twice"
+    TWICE = "number printed twice"
+    DISORDER = "row out of order"
+
+
+VERDICTS = MappingProxyType(
+    {
+        Kind.NUMBER: Verdict.DIFFERS,
+        Kind.LABEL: Verdict.DIFFERS,
+        Kind.OPEN: Verdict.INCOMPLETE,
+        Kind.UNREAD: Verdict.INCOMPLETE,
+        Kind.DOUBT: Verdict.AS_READ,
+        Kind.MISREAD: Verdict.AS_READ,
+        Kind.LOST: Verdict.AS_READ,
+        Kind.FOREIGN: Verdict.AS_READ,
+        Kind.ROW_LOST: Verdict.AS_READ,
+        Kind.ROW_TWICE: Verdict.AS_READ,
+        Kind.TWICE: Verdict.AS_READ,
+        Kind.DISORDER: Verdict.AS_READ,
+    }
+)
+"""The verdict of each kind of finding. A page has the gravest one, IDENTICAL without findings."""
+
+
+class Finding(NamedTuple):
+    """Something that was not read as the program prints it.
+
+    Parameters
+    ----------
+    kind : Kind
+        What it is.
+    name : str
+        The number, or the row's labels, "" for other text.
+    start, stop : int
+        Its place in the text; of something lost, the place where it would be.
+    read : str
+        What the text has there.
+    printed : str
+        What the program prints.
+    """
+
+    kind: Kind
+    name: str
+    start: int
+    stop: int
+    read: str
+    printed: str
+
+
+class Number(NamedTuple):
+    """A number of the page: as the program prints it, as read ("" if lost), and its place."""
+
+    printed: str
+    read: str
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True)
+class Verification:
+    """A printout with its verdict.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        What its findings give by `VERDICTS`.
+    scene : mapping of str to str
+        The scene as typed; empty if it was not recovered.
+    numbers : mapping of str to Number
+        Each number as printed and as read.
+    findings : tuple of Finding
+        All that was not read as the program prints it.
+    unseen : mapping of str to int
+        Digits of inputs that no other number of the page confirms, by input.
+    explanation : str
+        What explains a page that differs, "" if nothing of the list does.
+    page : tuple of PrintedChar
+        The page that the program prints for the scene, each character with its place.
+    text : str
+        The whole text, to which places refer.
+    span : tuple of int
+        First offset of the printout in it, and the end.
+    """
+
+    verdict: Verdict
+    scene: Mapping[str, str] = field(default_factory=dict)
+    numbers: Mapping[str, Number] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
+    unseen: Mapping[str, int] = field(default_factory=dict)
+    explanation: str = ""
+    page: tuple[PrintedChar, ...] = ()
+    text: str = field(default="", repr=False)
+    span: tuple[int, int] = (0, 0)
+
+    def line_of(self, offset: int) -> int:
+        """Return the number of the line of an offset, from 1."""
+        return len(re.findall("\r\n?|\n", self.text[:offset])) + 1
+
+
+def judge(text: str, given: Mapping[str, str] | None = None) -> list[Verification]:
+    """Return the verdict on each printout in a text.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+    given : mapping of str to str, optional
+        Inputs known from elsewhere, as typed, for a page that has only results.
+
+    Returns
+    -------
+    list of Verification
+        Empty if the text has no printout.
+
+    Examples
+    --------
+    >>> import impact88
+    >>> judge(impact88.run(impact88.sample(1)).page)[0].verdict
+    <Verdict.IDENTICAL: 'identical'>
+    """
+    return [judge_reading(reading, given or {}) for reading in read_printouts(text)]
+
+
+def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
+    """Return the verdict on one printout. Parameters as for `judge`."""
+    recovered, missing = find_scene(reading, given)
+    if recovered is None:
+        return _without_scene(reading, missing)
+    comparison = Comparison(reading, recovered.fields, recovered.scene, recovered.ending, given)
+    findings = comparison.findings()
+    verification = Verification(
+        verdict_of(findings),
+        recovered.scene,
+        comparison.numbers,
+        tuple(findings),
+        unseen_digits(recovered),
+        page=tuple(print_page(recovered.fields, comparison.typed_replies())),
+        text=reading.text,
+        span=reading.span(),
+    )
+    if verification.verdict is not Verdict.DIFFERS:
+        return verification
+    from .explain import explained
+
+    return explained(verification)
+
+
+def verdict_of(findings: Sequence[Finding]) -> Verdict:
+    """Return the gravest verdict of some findings."""
+    verdicts = {VERDICTS[finding.kind] for finding in findings}
+    return next((verdict for verdict in Verdict if verdict in verdicts), Verdict.IDENTICAL)
+
+
+def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
+    """Return the verdict on a printout that lacks inputs: numbers printed twice may differ."""
+    comparison = Comparison(reading, {}, {}, "", {})
+    findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
+    for name, slot in reading.repeated:
+        first = reading.slots.get(name)
+        if first and first.is_clean and comparison.is_contradiction(name, slot, first.text):
+            findings.append(comparison.finding(Kind.NUMBER, name, slot.glyphs, first.text))
+    return Verification(
+        verdict_of(findings), findings=tuple(findings), text=reading.text, span=reading.span()
+    )
+
+
+@dataclass
+class Word:
+    """A word or mark of the page: its cells, and the glyphs that were read for them."""
+
+    cells: list[int] = field(default_factory=list)
+    glyphs: list[Glyph] = field(default_factory=list)
+
+    @property
+    def first(self) -> Cell:
+        """The first cell."""
+        return CELLS[self.cells[0]]
+
+    @property
+    def printed(self) -> str:
+        """The printed characters."""
+        return "".join(CELLS[j].char for j in self.cells)
+
+    @property
+    def read(self) -> str:
+        """The characters that were read."""
+        return "".join(glyph.char for glyph in self.glyphs)
+
+    @property
+    def is_other_label(self) -> bool:
+        """True if another word is in the place of a label's word."""
+        if not self.first.char.isalpha() or self.first.row in PROMPTS or self.read == self.printed:
+            return False
+        if not (self.read.isascii() and self.read.isalpha()):
+            return False
+        same = sum(a == b for a, b in zip(self.printed, self.read, strict=False))
+        return self.read in _WORDS or 2 * same < len(self.printed)
+
+    @property
+    def misread(self) -> int:
+        """Number of characters that a machine misread: none of another label."""
+        if self.is_other_label:
+            return 0
+        pairs = zip(self.printed, self.read, strict=False)
+        return sum(one != other and other.isalnum() for one, other in pairs)
+
+
+class Comparison:
+    """Comparison of a reading with the page of a scene.
+
+    Parameters
+    ----------
+    reading : Reading
+        What was read.
+    fields : mapping of str to str
+        The numbers that the program prints.
+    scene : mapping of str to str
+        The scene as typed.
+    ending : str
+        The message that ends the program.
+    given : mapping of str to str
+        Inputs that the page need not have.
+    """
+
+    def __init__(
+        self,
+        reading: Reading,
+        fields: Mapping[str, str],
+        scene: Mapping[str, str],
+        ending: str,
+        given: Mapping[str, str],
+    ) -> None:
+        self.reading, self.fields, self.scene = reading, fields, scene
+        self.ending = ending.replace(" ", "")
+        self.words, self.lost_rows = self._words()
+        names = [name for name in NAMES if name in fields or name in reading.slots]
+        if given:  # of a page with results only
+            names = [name for name in names if name in reading.slots or self._is_due(name, given)]
+        self.numbers = {name: self._number(name) for name in names}
+        damaged = [name for name in names if _NO_NUMBER.search(reading_text(reading, name))]
+        self.noise = len(damaged) + sum(word.misread for word in self.words)
+        self.is_machine_read = self.noise >= MACHINE_READ
+
+    def _is_due(self, name: str, given: Mapping[str, str]) -> bool:
+        return scene_name(name) not in given and ROW_OF[name] not in self.lost_rows
+
+    # --- places -----------------------------------------------------------------------------------
+
+    def _place(self, name: str, glyphs: Sequence[Glyph], cell: int | None = None) -> tuple[int, int]:
+        """Return the place of glyphs, or the gap where a number's, or a cell's, would be."""
+        if glyphs:
+            return glyphs[0].offset, glyphs[-1].offset + 1
+        slot = "ANGLES" if name in ANGLES else name
+        at = cell if cell is not None else next((j for j, one in enumerate(CELLS) if one.name == slot), 0)
+        read = {j: [glyph] for j, glyph in self.reading.chars.items()}
+        for j, one in enumerate(CELLS):
+            names = ANGLES if one.name == "ANGLES" else (one.name,)
+            slots = [self.reading.slots[n] for n in names if n in self.reading.slots]
+            if one.kind == "slot" and slots:
+                read[j] = [glyph for slot in slots for glyph in slot.glyphs]
+        start, stop = self.reading.span()
+        before = [j for j in read if j < at]
+        behind = [j for j in read if j > at]
+        if before:
+            start = max(glyph.offset for glyph in read[max(before)]) + 1
+        if behind:
+            stop = min(glyph.offset for glyph in read[min(behind)])
+        return min(start, stop), max(start, stop)
+
+    def finding(
+        self, kind: Kind, name: str, glyphs: Sequence[Glyph], printed: str, cell: int | None = None
+    ) -> Finding:
+        """Return a finding at the place of some glyphs."""
+        start, stop = self._place(name, glyphs, cell)
+        read = self.reading.text[start:stop] if glyphs else ""
+        return Finding(kind, name, start, stop, read, printed)
+
+    def number_finding(self, kind: Kind, name: str) -> Finding:
+        """Return a finding at the place of a number."""
+        slot = self.reading.slots.get(name)
+        return self.finding(kind, name, slot.glyphs if slot else [], self.fields.get(name, ""))
+
+    def _number(self, name: str) -> Number:
+        finding = self.number_finding(Kind.UNREAD, name)
+        return Number(finding.printed, finding.read, finding.start, finding.stop)
+
+    # --- findings ---------------------------------------------------------------------------------
+
+    def findings(self) -> list[Finding]:
+        """Return all that was not read as the program prints it, in the order of the text."""
+        findings = [
+            self.number_finding(kind, name)
+            for name in self.numbers
+            if (kind := self._number_kind(name))
+        ]
+        findings += self._reply_findings()
+        findings += [
+            self.finding(self._word_kind(word), word.first.name, word.glyphs, word.printed, word.cells[0])
+            for word in self.words
+            if word.read != word.printed
+        ]
+        for row in self.lost_rows:
+            cell = next(j for j, one in enumerate(CELLS) if one.row == row)
+            findings.append(self.finding(Kind.ROW_LOST, TITLES[row], [], TITLES[row], cell))
+        findings += [self.finding(Kind.FOREIGN, "", run, "") for run in self.reading.foreign]
+        findings += self._repeated_findings()
+        if self.reading.ending != self.ending:
+            kind = Kind.LABEL if self.reading.ending else Kind.UNREAD
+            findings.append(self.finding(kind, "message", [], self.ending, len(CELLS)))
+        findings = self._settle(findings)
+        return sorted(findings, key=lambda finding: finding.start)
+
+    def _number_kind(self, name: str) -> Kind | None:
+        """Return what a number is that was not read as printed; None for one that was."""
+        slot, printed = self.reading.slots.get(name), self.fields.get(name, "")
+        if not slot:
+            row = tuple(self.fields.get(angle, "") for angle in ANGLES)
+            is_in_row = name in ANGLES and any(texts == row for texts, _ in self.reading.angle_rows)
+            return Kind.DOUBT if is_in_row else Kind.UNREAD
+        read = slot.text
+        if read == printed and slot.is_clean:
+            return None
+        if printed in (read, as_printed(read), read.strip("()[]{}")):
+            return Kind.DOUBT
+        if slot.is_clean:
+            return Kind.UNREAD if self._is_cut(slot, printed) else Kind.NUMBER
+        number = PRINTED.match(read)
+        if number and number[0] == printed and not re.search("[0-9]", read[number.end() :]):
+            return Kind.DOUBT
+        foreign = len(_NO_NUMBER.findall(re.sub("[(CI{].?[)}]", "O", read)))
+        if foreign <= 1 and printed in readings(read):
+            return Kind.DOUBT
+        changes = [b for a, b in zip(printed, read, strict=False) if a != b]
+        is_blot = len(printed) == len(read) and len(changes) == 1 and not changes[0].isdigit()
+        return Kind.DOUBT if is_blot else Kind.UNREAD
+
+    def _is_cut(self, slot: Slot, printed: str) -> bool:
+        """Return True for the beginning of a number at the end of its line."""
+        behind = self.reading.text[slot.glyphs[-1].offset + 1 :]
+        return printed.startswith(slot.text) and bool(re.match(r"[^\S\n]*(\r?\n|$)", behind))
+
+    def is_contradiction(self, name: str, slot: Slot, printed: str) -> bool:
+        """Return True if a number that was read again is cleanly another.
+
+        One whose label is on two rows is another only if its twin was read, too.
+        """
+        has_twin = TWINS.get(name, name) in self.reading.slots
+        return has_twin and slot.is_clean and as_printed(slot.text) != printed
+
+    def typed_replies(self) -> dict[str, str]:
+        """Return the replies at the prompts that the scene gives."""
+        return {
+            reply: ",".join(self.scene.get(name, "") for name in names)
+            for reply, names in REPLIES.items()
+        }
+
+    def _reply_findings(self) -> Iterator[Finding]:
+        """Yield the replies that are not the scene's numbers."""
+        for reply, printed in self.typed_replies().items():
+            if not (slot := self.reading.slots.get(reply)):
+                continue
+            texts = [self.reading.replies.get(name, "") for name in REPLIES[reply]]
+            is_same = all(map(is_same_value, texts, printed.split(",")))
+            if is_same and slot.label == "exact":
+                continue
+            is_clean = slot.label == "exact" and all(map(TYPED.fullmatch, texts))
+            is_other = is_clean and not is_same and not self.is_machine_read
+            yield self.finding(Kind.NUMBER if is_other else Kind.DOUBT, reply, slot.glyphs, printed)
+
+    def _word_kind(self, word: Word) -> Kind:
+        if word.is_other_label and not self.is_machine_read:
+            return Kind.LABEL
+        return Kind.MISREAD if word.read else Kind.LOST
+
+    def _words(self) -> tuple[list[Word], list[int]]:
+        """Return the words and marks that the program prints, and the rows of which none was read.
+
+        Both prompts may be absent, and both rows of asterisks.
+        """
+        by_row: dict[int, list[Word]] = {}
+        rows = printed_rows({**self.fields, **dict.fromkeys(REPLIES, "")})
+        for j, cell in enumerate(CELLS):
+            is_due = cell.name in self.fields or cell.name not in NAMES
+            if cell.kind != "word" or cell.row not in rows or not is_due:
+                continue
+            words = by_row.setdefault(cell.row, [])
+            if cell.first:
+                words.append(Word())
+            words[-1].cells.append(j)
+            if j in self.reading.chars:
+                words[-1].glyphs.append(self.reading.chars[j])
+        lost = {row for row, words in by_row.items() if not any(word.glyphs for word in words)}
+        kept = [word for row, words in by_row.items() if row not in lost for word in words]
+        for pair in ({*PROMPTS}, {*ASTERISKS}):
+            lost -= pair if pair <= lost else set()
+        return kept, sorted(lost)
+
+    def _repeated_findings(self) -> Iterator[Finding]:
+        """Yield the numbers that were printed twice, and the rows that were, or out of order."""
+        by_row: dict[int, list[Finding]] = {}
+        for name, slot in self.reading.repeated:
+            printed = self.fields.get(name, "")
+            is_other = bool(printed) and self.is_contradiction(name, slot, printed)
+            finding = self.finding(Kind.NUMBER if is_other else Kind.TWICE, name, slot.glyphs, printed)
+            by_row.setdefault(ROW_OF.get(name, 0), []).append(finding)
+        for row, glyph in self.reading.disorder:
+            repeated = by_row.get(row, [])
+            is_twice = {finding.name for finding in repeated} >= {
+                name for name in NAMES if ROW_OF[name] == row
+            }
+            if is_twice and all(finding.kind is Kind.TWICE for finding in repeated):
+                by_row[row] = []
+            kind = Kind.ROW_TWICE if is_twice else Kind.DISORDER
+            yield self.finding(kind, TITLES[row], [glyph], TITLES[row])
+        yield from (finding for repeated in by_row.values() for finding in repeated)
+
+    # --- which contradictions count ---------------------------------------------------------------
+
+    def _settle(self, findings: Sequence[Finding]) -> list[Finding]:
+        """Return the findings, with numbers that differ left open where they prove nothing.
+
+        They do not where inputs were not read, where more of them differ than an alteration
+        explains while an input is in doubt, and, on a page that a machine read, unless each is one
+        digit for another in which the reader does not err elsewhere.
+        """
+        numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
+        if not numbers:
+            return [*findings]
+        unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
+        digits = sum(
+            map(str.isdigit, "".join(f.read for f in findings if f.kind is Kind.FOREIGN))
+        )
+        is_unsure = digits >= MAX_FOREIGN_DIGITS or any(map(self._is_doubtful_input, findings))
+        is_open = any(finding.name in INPUTS for finding in unread)
+        is_open |= is_unsure and len(numbers) + len(unread) > MAX_ALTERED
+        if self.is_machine_read and not is_open:
+            if _is_readers_work(numbers):
+                return [_attributed(finding) for finding in findings]
+            swaps = [_swap(finding) for finding in numbers]
+            is_sure = all(swaps) and len({*swaps}) == len(swaps) <= MAX_ALTERED
+            is_open = not is_sure or self.noise >= BADLY_READ or bool(unread)
+        if not is_open:
+            return [*findings]
+        return [
+            finding._replace(kind=Kind.OPEN) if finding.kind is Kind.NUMBER else finding
+            for finding in findings
+        ]
+
+    def _is_doubtful_input(self, finding: Finding) -> bool:
+        """Return True for an input in doubt that is not just written otherwise."""
+        if finding.kind is not Kind.DOUBT or finding.name not in INPUTS:
+            return False
+        read = reading_text(self.reading, finding.name)
+        return read == finding.printed or as_printed(read) != finding.printed
+
+
+def reading_text(reading: Reading, name: str) -> str:
+    """Return the characters in the place of a number, "" for none."""
+    return reading.slots[name].text if name in reading.slots else ""
+
+
+def _swap(finding: Finding) -> str:
+    """Return the digit printed and the one read in its place; "" for other findings."""
+    pairs = [a + b for a, b in zip(finding.printed, finding.read, strict=False) if a != b]
+    is_swap = len(pairs) == 1 and len(finding.printed) == len(finding.read) and pairs[0].isdigit()
+    return pairs[0] if is_swap else ""
+
+
+def _is_readers_work(numbers: Sequence[Finding]) -> bool:
+    """Return True if a machine may have made all of these: each digit for another more than once,
+    and a character lost or added in a few."""
+    swaps = [swap for finding in numbers if (swap := _swap(finding))]
+    others = [finding for finding in numbers if not _swap(finding)]
+    is_few = len(others) <= MAX_READER_SLIPS and all(map(_is_loss, others))
+    return is_few and all(swaps.count(swap) > 1 for swap in swaps)
+
+
+def _is_loss(finding: Finding) -> bool:
+    """Return True for a number from which characters, at most one a digit, are lost or added."""
+    short, long = sorted((finding.printed, finding.read), key=len)
+    digits = [sum(map(str.isdigit, text)) for text in (short, long)]
+    chars = iter(long)
+    return bool(short) and all(char in chars for char in short) and digits[1] - digits[0] <= 1
+
+
+def _attributed(finding: Finding) -> Finding:
+    """Return a number that differs as one that the reader misread: an input of other digits is not
+    read, anything else is in doubt."""
+    if finding.kind is not Kind.NUMBER:
+        return finding
+    printed, read = (re.sub("[^0-9]", "", text) for text in (finding.printed, finding.read))
+    is_slight = finding.name not in INPUTS or printed == read
+    return finding._replace(kind=Kind.DOUBT if is_slight else Kind.UNREAD)
