@@ -8,14 +8,14 @@ combinations of readings; then slips in single inputs of the best ones, as long 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..program.vectorized import replay
+from ..program.replay import replay
 from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
 from .numerals import TYPED, readings, slips, spellings, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, RESULTS
@@ -121,10 +121,11 @@ def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | 
     if best[0].mismatch >= CONTRADICTED:
         best = replay_candidates([*_combinations(columns, ms, MAX_CANDIDATES)], expected)
     as_read = best[0]
+    clean = {name for name in INPUTS if name in reading.slots and reading.slots[name].is_clean}
     for _ in range(BEST):
         if best[0].mismatch < CONTRADICTED:
             break
-        edits = [edit for found in best for edit in _edits(found.candidate)]
+        edits = [edit for found in best for edit in _edits(found.candidate, clean)]
         more = replay_candidates(edits, expected)
         if more[0].cost >= best[0].cost:
             break
@@ -173,8 +174,11 @@ def _combinations(
         yield Candidate(printed, typed, ms[m][0], cost)
 
 
-def _edits(candidate: Candidate) -> Iterator[Candidate]:
-    """Yield a scene with one input typed otherwise that prints alike, or with one slip in it."""
+def _edits(candidate: Candidate, clean: Collection[str]) -> Iterator[Candidate]:
+    """Yield a scene with one input typed otherwise that prints alike, or with one slip in it.
+
+    A number that was read cleanly is contradicted by a slip in it.
+    """
     printed, typed, m, cost = candidate
     for name, text in printed.items():
         texts = [*spellings(text, name in ANGLES)]
@@ -183,7 +187,8 @@ def _edits(candidate: Candidate) -> Iterator[Candidate]:
         for rank, other in enumerate(texts):
             yield Candidate(printed, {**typed, name: other}, m, cost + PASSED * (1 + rank / 9))
         for other, more in slips(text):
-            yield Candidate({**printed, name: other}, {**typed, name: other}, m, cost + more)
+            total = cost + more + CONTRADICTED * (name in clean)
+            yield Candidate({**printed, name: other}, {**typed, name: other}, m, total)
 
 
 def replay_candidates(
