@@ -1,10 +1,18 @@
-"""Is a printout what the program prints: reading, recovering, judging, explaining, reporting.
+"""Printouts: is a text, or the text of a picture, what the 1988 program prints?
 
-Needs: `program` (the page for a scene), `equations` (mistakes in a copy), `mechanics` (a first
-scene), `collision` (fields, scenes), `apple` (numbers as they are printed and typed).
-In: text, a picture or a PDF of a page. Out: a verdict, every number with what was read, what would
-explain the differences.
-Way: `reporting.examination` (`examine`) goes through `reading` or `scan`, `recovery`, `judging` and
-`explaining`.
-Used by: who validates historical casework (`impact88 verify`, the desk); `casework`'s report.
+glyphs    a text as characters with the gaps between them
+page      the program's page: rows, labels, places of numbers
+labels    the labels that were read exactly, in the page's order
+align     what stands between two labels, aligned with the cells between them
+reader    the printouts of a text, number by number
+search    the scene they come from, by exact replay
+verdict   the comparison with that scene's page
+findings  the kinds of findings, and the verdict that follows from them by one table
+explain   what explains a page that differs
+words     verdicts in words and as JSON
 """
+
+from .findings import VERDICTS, Finding, Kind, Number, Verdict, Verification
+from .verdict import judge
+
+__all__ = ["VERDICTS", "Finding", "Kind", "Number", "Verdict", "Verification", "judge"]

@@ -1,7 +1,7 @@
 """Alignment of glyphs with cells of the page by dynamic programming (Needleman and Wunsch, 1970).
 
-With s the cost of a glyph in a cell, a that of a glyph added after a cell, l that of a lost cell and
-r that of lost rows, the least cost of having read i glyphs and passed j cells is
+With s the cost of a glyph in a cell, a that of a glyph added after a cell, l that of a lost cell
+and r that of lost rows, the least cost of having read i glyphs and passed j cells is
 
     D[i, j] = min(D[i-1, j-1] + s, D[i-1, j] + a, D[i, j-1] + l, D[i, start of an earlier row] + r)
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .costs import ALIKE, FOREIGN, LOST, LOST_ROW, WRONG
-from .glyphs import LINE_GAP, LOOKALIKES, Glyph
+from .glyphs import LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
 from .page import Cell
 
@@ -113,7 +113,8 @@ class Aligner:
         row = np.minimum.accumulate(row - self.lost_sums) + self.lost_sums
         at_rows = np.minimum.accumulate(row[self.starts] - self.row_sums) + self.row_sums
         row[self.starts] = at_rows
-        return np.minimum.accumulate(row - self.lost_sums) + self.lost_sums
+        costs: Costs = np.minimum.accumulate(row - self.lost_sums) + self.lost_sums
+        return costs
 
     def align(self, glyphs: Sequence[Glyph]) -> list[Pair]:
         """Return the cheapest alignment.

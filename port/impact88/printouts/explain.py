@@ -1,2 +1,8 @@
-from .verdict import Verification
-def explained(v): return v
+"""What explains a page that differs."""
+
+from .findings import Verification
+
+
+def explained(verification: Verification) -> Verification:
+    """Return a verification with what explains it."""
+    return verification

@@ -1,51 +1,80 @@
-"""Findings on a page and the verification of a printout: the types that readers of text and
-pictures share."""
+"""Findings on a printout, and the verdict that follows from them by one table."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import Enum
+from types import MappingProxyType
+from typing import NamedTuple
+
+from .page import PrintedChar
 
 
-class FindingKind(Enum):
-    """Kinds of findings; the verdict follows from the kinds that a page has."""
+class Verdict(Enum):
+    """The verdicts, the gravest first."""
 
-    CONTRADICTION = "contradiction"
-    DOUBT = "doubt"
-    MISSING_NUMBER = "missing number"
-    MISSING_LABEL = "missing label"
-    FOREIGN_TEXT = "foreign text"
-
-
-class PageVerdict(Enum):
-    """Verdicts on a printout."""
-
-    IDENTICAL = "IDENTICAL"
-    AS_FAR_AS_READ = "IDENTICAL AS FAR AS READ"
-    INCOMPLETE = "INCOMPLETE"
-    DIFFERS = "DIFFERS"
+    DIFFERS = "differs"
+    INCOMPLETE = "incomplete"
+    AS_READ = "identical as far as read"
+    IDENTICAL = "identical"
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One finding on a page.
+class Kind(Enum):
+    """Kinds of findings."""
+
+    NUMBER = "another number"
+    LABEL = "another word in a label's place"
+    OPEN = "another number, on a page or for inputs read with doubt"
+    UNREAD = "number not read"
+    DOUBT = "number read with doubt"
+    MISREAD = "word or mark read otherwise"
+    LOST = "word or mark not read"
+    FOREIGN = "text that the program does not print"
+    ROW_LOST = "row not read"
+    ROW_TWICE = "row printed twice"
+    TWICE = "number printed twice"
+    DISORDER = "row out of order"
+
+
+VERDICTS = MappingProxyType(
+    {
+        Kind.NUMBER: Verdict.DIFFERS,
+        Kind.LABEL: Verdict.DIFFERS,
+        Kind.OPEN: Verdict.INCOMPLETE,
+        Kind.UNREAD: Verdict.INCOMPLETE,
+        Kind.DOUBT: Verdict.AS_READ,
+        Kind.MISREAD: Verdict.AS_READ,
+        Kind.LOST: Verdict.AS_READ,
+        Kind.FOREIGN: Verdict.AS_READ,
+        Kind.ROW_LOST: Verdict.AS_READ,
+        Kind.ROW_TWICE: Verdict.AS_READ,
+        Kind.TWICE: Verdict.AS_READ,
+        Kind.DISORDER: Verdict.AS_READ,
+    }
+)
+"""The verdict of each kind of finding. A page has the gravest one, IDENTICAL without findings."""
+
+
+class Finding(NamedTuple):
+    """Something that was not read as the program prints it.
 
     Parameters
     ----------
-    kind : FindingKind
-        Its kind.
+    kind : Kind
+        What it is.
     name : str
-        The quantity or row concerned.
+        The number, or the row's labels, "" for other text.
     start, stop : int
-        Its place in the text.
+        Its place in the text; of something lost, the place where it would be.
     read : str
-        The text at that place.
+        What the text has there.
     printed : str
-        The text that the program prints there.
+        What the program prints.
     """
 
-    kind: FindingKind
+    kind: Kind
     name: str
     start: int
     stop: int
@@ -53,32 +82,57 @@ class Finding:
     printed: str
 
 
+class Number(NamedTuple):
+    """A number of the page: as the program prints it, as read ("" if lost), and its place."""
+
+    printed: str
+    read: str
+    start: int
+    stop: int
+
+
 @dataclass(frozen=True)
-class PageVerification:
-    """The result of checking one printout.
+class Verification:
+    """A printout with its verdict.
 
     Parameters
     ----------
-    verdict : PageVerdict
-        IDENTICAL, AS_FAR_AS_READ, INCOMPLETE or DIFFERS.
-    scene : mapping of str to str or None
-        The inputs recovered, as typed; None if they are not beyond doubt.
-    numbers : mapping of str to str
-        Printed numbers that were read, by name.
+    verdict : Verdict
+        What its findings give by `VERDICTS`.
+    scene : mapping of str to str
+        The scene as typed; empty if it was not recovered.
+    numbers : mapping of str to Number
+        Each number as printed and as read.
     findings : tuple of Finding
-        In the order of the text.
-    unseen : tuple of str
-        Errors that this page could not reveal.
+        All that was not read as the program prints it.
+    unseen : mapping of str to int
+        Digits of inputs that no other number of the page confirms, by input.
     explanation : str
-        The change that makes a differing page agree; "" if there is none.
-    page : str
-        The page that the program prints for the scene.
+        What explains a page that differs, "" if nothing of the list does.
+    page : tuple of PrintedChar
+        The page that the program prints for the scene, each character with its place.
+    text : str
+        The whole text, to which places refer.
+    span : tuple of int
+        First offset of the printout in it, and the end.
     """
 
-    verdict: PageVerdict
-    scene: Mapping[str, str] | None
-    numbers: Mapping[str, str]
+    verdict: Verdict
+    scene: Mapping[str, str] = field(default_factory=dict)
+    numbers: Mapping[str, Number] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
-    unseen: tuple[str, ...] = ()
+    unseen: Mapping[str, int] = field(default_factory=dict)
     explanation: str = ""
-    page: str = ""
+    page: tuple[PrintedChar, ...] = ()
+    text: str = field(default="", repr=False)
+    span: tuple[int, int] = (0, 0)
+
+    def line_of(self, offset: int) -> int:
+        """Return the number of the line of an offset, from 1."""
+        return len(re.findall("\r\n?|\n", self.text[:offset])) + 1
+
+
+def verdict_of(findings: Sequence[Finding]) -> Verdict:
+    """Return the gravest verdict of some findings."""
+    verdicts = {VERDICTS[finding.kind] for finding in findings}
+    return next((verdict for verdict in Verdict if verdict in verdicts), Verdict.IDENTICAL)

@@ -136,7 +136,9 @@ def glyphs_of(text: str) -> list[Glyph]:
     text = _without_prefixes(text)
     lengths = [len(line.rstrip()) for line in text.split("\n")]
     longest = max(lengths)
-    is_wrapped = longest in SCREEN_WIDTHS or (longest < max(SCREEN_WIDTHS) and lengths.count(longest) > 2)
+    is_wrapped = longest in SCREEN_WIDTHS or (
+        longest < max(SCREEN_WIDTHS) and lengths.count(longest) > 2
+    )
     glyphs = []
     gap, start = LINE_GAP, 0
     for offset, char in enumerate(text):

@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from .costs import ALIKE, BACKWARD, FOREIGN, OTHER_LABEL, PASSED
 from .glyphs import LINE_GAP, LOOKALIKES, WIDE_GAP, Glyph, chars_of, split_at_gaps
-from .page import ASTERISKS, CELLS, HEADING, ROWS
+from .page import ASTERISKS, CELLS, ROWS
 
 
 class Label(NamedTuple):

@@ -88,7 +88,9 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
 
 def is_same_value(first: str, second: str) -> bool:
     """Return True if the Apple stores two typed texts as the same number."""
-    stored = [stored_and_printed(text) if TYPED.fullmatch(text) else None for text in (first, second)]
+    stored = [
+        stored_and_printed(text) if TYPED.fullmatch(text) else None for text in (first, second)
+    ]
     return stored[0] is not None and stored[1] is not None and stored[0][0] == stored[1][0]
 
 
@@ -143,6 +145,10 @@ def slips(text: str) -> Iterator[tuple[str, float]]:
             variants.append((before + behind, WRONG + RESPELLED))
             variants.append((before + behind[:1] + char + behind[1:], WRONG + RESPELLED))
         for variant, cost in variants:
-            if variant not in seen and PRINTED.fullmatch(variant) and as_printed(variant) == variant:
+            if (
+                variant not in seen
+                and PRINTED.fullmatch(variant)
+                and as_printed(variant) == variant
+            ):
                 seen.add(variant)
                 yield variant, cost

@@ -34,12 +34,14 @@ NAMES = tuple(re.findall(r"{(\w+)}", " ".join(ROWS[2:])))
 """The printed numbers, in order."""
 INPUTS = tuple("MA MB IA IB DA DB PA PB TA TB GA UX UY WA VX VY WB E MUP EM".split())
 RESULTS = tuple(name for name in NAMES if name not in INPUTS)
-ROW_OF = {
-    name: row for row, text in enumerate(ROWS) for name in re.findall(r"{(\w+)}", text)
-} | {"ANGLES": ANGLE_ROW}
+ROW_OF = {name: row for row, text in enumerate(ROWS) for name in re.findall(r"{(\w+)}", text)} | {
+    "ANGLES": ANGLE_ROW
+}
 """Row of each number."""
 TITLES = tuple(
-    "asterisks" if row in ASTERISKS else " ".join(re.findall(r"[A-Za-z]+", re.sub("{.*?}", "", text)))[:24]
+    "asterisks"
+    if row in ASTERISKS
+    else " ".join(re.findall(r"[A-Za-z]+", re.sub("{.*?}", "", text)))[:24]
     for row, text in enumerate(ROWS)
 )
 """What a row is called in words: its labels."""

@@ -11,8 +11,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from itertools import accumulate, groupby, pairwise
-from math import inf
+from heapq import nsmallest
+from itertools import accumulate, groupby, pairwise, product
 
 import numpy as np
 
@@ -20,8 +20,18 @@ from .align import Aligner
 from .costs import ALIKE, WRONG
 from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of, glyphs_of, split_at_gaps
 from .labels import LABELS, WORDS, Anchor, Label, find_anchors, find_labels, is_note
-from .numerals import MAX_READINGS, PRINTED, as_printed, readings
-from .page import ANGLE_ROW, ANGLES, ASTERISKS, CELLS, HEADING, NAMES, PROMPTS, REPLIES, ROW_OF, ROWS
+from .numerals import PRINTED, as_printed, readings
+from .page import (
+    ANGLES,
+    ASTERISKS,
+    CELLS,
+    HEADING,
+    NAMES,
+    PROMPTS,
+    REPLIES,
+    ROW_OF,
+    ROWS,
+)
 
 OWNED = re.compile(
     r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:])"
@@ -39,6 +49,10 @@ MAX_NUMBER = 16
 """Characters of a damaged angle."""
 MAX_PARTS = 10
 """Readings of each of the five."""
+MAX_ANGLE_ROWS = 60
+"""Ways to read the row of angles."""
+Way = tuple[float, tuple[str, ...]]
+"""The first angles of a row, and their cost."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
 TWINS = {name: name + "F" for name in NAMES if name + "F" in NAMES}
@@ -180,7 +194,10 @@ def read_printouts(text: str) -> list[Reading]:
         last = min(page[1] + 2 * (len(ROWS) - page[3]), below - 1)
         reading = _Reader(text, glyphs[cuts[first] : cuts[last + 1]]).read()
         line = glyphs[cuts[page[0] - 1] : cuts[page[0]]] if page[0] > above else []
-        if find_labels(line) and text.count("\n", line[-1].offset, glyphs[cuts[page[0]]].offset) < 2:
+        if (
+            find_labels(line)
+            and text.count("\n", line[-1].offset, glyphs[cuts[page[0]]].offset) < 2
+        ):
             reading.foreign.append(line)  # a note right above the page
         printouts.append(reading)
     return [reading for reading in printouts if reading.is_printout]
@@ -252,7 +269,7 @@ class _Reader:
             rest = glyphs[count:]
             if owner == "ANGLES":
                 head, *lines = split_at_gaps(slot.glyphs, LINE_GAP)
-                if lines and not head[0].gap == LINE_GAP:
+                if lines and head[0].gap != LINE_GAP:
                     self.reading.foreign.append(head)  # behind the heading
                     slot.glyphs = slot.glyphs[len(head) :]
             elif owner not in REPLIES:
@@ -297,7 +314,11 @@ class _Reader:
 
         A number without a label counts only if its line has as many numbers as places.
         """
-        pairs = _aligner(tuple(cells)).align(glyphs) if cells else [(i, None) for i in range(len(glyphs))]
+        pairs = (
+            _aligner(tuple(cells)).align(glyphs)
+            if cells
+            else [(i, None) for i in range(len(glyphs))]
+        )
         own: dict[str, list[int]] = {}
         labelled: set[str] = {*_MANY}
         foreign: set[int] = set()
@@ -324,7 +345,9 @@ class _Reader:
             places = sum(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells)
             is_whole = _is_whole(glyphs, members)
             is_single = is_whole and places == _count_numbers(glyphs, members, own)
-            label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in labelled)
+            label = (
+                "exact" if is_owned and name == _owner(before) else "damaged" * (name in labelled)
+            )
             if not label and not is_single:
                 foreign.update(members)
                 continue
@@ -488,28 +511,28 @@ def angle_rows(row: Sequence[Glyph]) -> list[tuple[tuple[str, ...], float]]:
     words = [chars_of(word) for word in split_at_gaps(row)]
     ends = [0, *accumulate(map(len, words))]
     damaged = [not PRINTED.fullmatch(as_printed(word)) for word in words]
-    price = {end: 0.0 for end in ends}
-    joint = {end: WRONG for k, end in enumerate(ends[1:-1]) if damaged[k] or damaged[k + 1]}
-    for k, word in enumerate(words):
-        inner = range(ends[k] + 1, ends[k + 1]) if damaged[k] else ()
-        price |= {at: ALIKE + WRONG * (row[at].char != "-") for at in inner}
-    ways = {end: [(WRONG * k, ())] for k, end in enumerate(ends)}
+    cut_costs = dict.fromkeys(ends, 0.0)
+    for k, is_damaged in enumerate(damaged):
+        for at in range(ends[k] + 1, ends[k + 1]) if is_damaged else ():
+            cut_costs[at] = ALIKE + WRONG * (row[at].char != "-")
+    joints = {end for k, end in enumerate(ends[1:-1]) if damaged[k] or damaged[k + 1]}
+    ways: dict[int, list[Way]] = {end: [(WRONG * k, ())] for k, end in enumerate(ends)}
     for _ in ANGLES:
-        longer: dict[int, list[tuple[float, tuple[str, ...]]]] = {}
-        for a, heads in ways.items():
-            for b in filter(a.__lt__, price):
-                crossed = [joint.get(end, inf) for end in ends if a < end < b]
-                if b - a > MAX_NUMBER or inf in crossed:
-                    continue
-                more = price[b] + sum(crossed)
-                for text, cost in [*readings(chars_of(row[a:b])).items()][:MAX_PARTS]:
-                    longer.setdefault(b, []).extend(
-                        (head + cost + more, (*texts, text)) for head, texts in heads
-                    )
-        ways = {at: sorted(some)[:MAX_READINGS] for at, some in longer.items()}
+        longer: dict[int, list[Way]] = {}
+        for a, b in product(ways, cut_costs):
+            crossed = [end for end in ends if a < end < b]
+            if not a < b <= a + MAX_NUMBER or not joints.issuperset(crossed):
+                continue
+            more = cut_costs[b] + WRONG * len(crossed)
+            texts = [*readings(chars_of(row[a:b])).items()][:MAX_PARTS]
+            longer.setdefault(b, []).extend(
+                (head + cost + more, (*angles, text))
+                for (head, angles), (text, cost) in product(ways[a], texts)
+            )
+        ways = {at: nsmallest(MAX_ANGLE_ROWS, some) for at, some in longer.items()}
     rows: dict[tuple[str, ...], float] = {}
     for k, end in enumerate(ends):
-        for cost, texts in ways.get(end, ()):
+        for cost, angles in ways.get(end, ()):
             total = cost + WRONG * (len(words) - k)
-            rows[texts] = min(total, rows.get(texts, total))
-    return sorted(rows.items(), key=lambda item: item[1])[:MAX_READINGS]
+            rows[angles] = min(total, rows.get(angles, total))
+    return sorted(rows.items(), key=lambda item: item[1])[:MAX_ANGLE_ROWS]

@@ -2,7 +2,7 @@
 
 A scene costs what its inputs do, plus what it costs that each result it prints is the one that was
 read. The scene as read is tried first; where it leaves a result unexplained, the cheapest
-combinations of readings; then slips in single inputs of the best ones, as long as they explain more.
+combinations of readings; then slips in single inputs of the best ones, while they explain more.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..program.replay import replay
-from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
+from .costs import ALIKE, CONTRADICTED, LOST, PASSED
 from .numerals import TYPED, readings, slips, spellings, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, RESULTS
 from .reader import Reading
@@ -204,7 +204,9 @@ def replay_candidates(
         What each result may be, and the cost of each; an empty one for a result not read.
     """
     columns = {
-        name: [candidate.typed[name] for candidate in candidates] for name in INPUTS if name != "MUP"
+        name: [candidate.typed[name] for candidate in candidates]
+        for name in INPUTS
+        if name != "MUP"
     }
     columns["M"] = [candidate.M for candidate in candidates]
     mu = np.array([candidate.typed["MUP"] for candidate in candidates], dtype="U40")
@@ -233,7 +235,8 @@ def _result_cost(text: str, costs: Mapping[str, float]) -> float:
 
 
 def _recovered(candidate: Candidate, mismatch: float, mu: str, run: Any, k: int) -> Recovered:
-    fields = {name: text for name in NAMES if (text := str(run.printed(name)[k]))}
+    texts = zip(NAMES, run.fields[k].astype(str).tolist(), strict=True)
+    fields = {name: text for name, text in texts if text}
     scene = {name: candidate.typed[name] for name in INPUTS if name != "MUP"}
     scene |= {"MU": mu, "M": candidate.M}
     ending = ZERO_DETERMINANT if run.zero_determinant[k] else str(run.error[k])

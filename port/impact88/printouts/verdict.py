@@ -1,7 +1,7 @@
 """The verdict on a printout, from the comparison of all that was read with the page of its scene.
 
 Everything that was not read as the program prints it is a `Finding` of one kind, at one place of
-the text. The verdict follows from the findings by `VERDICTS`.
+the text. The verdict follows from the findings by `findings.VERDICTS`.
 """
 
 from __future__ import annotations
@@ -9,11 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal
-from enum import Enum
-from types import MappingProxyType
-from typing import NamedTuple
 
+from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import Glyph
 from .labels import LABELS
 from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
@@ -28,12 +25,11 @@ from .page import (
     ROW_OF,
     TITLES,
     Cell,
-    PrintedChar,
     print_page,
     printed_rows,
 )
 from .reader import TWINS, Reading, Slot, read_printouts
-from .search import Recovered, find_scene, scene_name, unseen_digits
+from .search import find_scene, scene_name, unseen_digits
 
 MACHINE_READ = 3
 """Misread characters of labels and numbers from which a page counts as read by a machine."""
@@ -47,126 +43,6 @@ MAX_FOREIGN_DIGITS = 6
 """Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
 _WORDS = frozenset(re.findall("[A-Z]+", " ".join(label.text for label in LABELS if label.row > 1)))
-
-
-class Verdict(Enum):
-    """The verdicts, the gravest first."""
-
-    DIFFERS = "differs"
-    INCOMPLETE = "incomplete"
-    AS_READ = "identical as far as read"
-    IDENTICAL = "identical"
-
-
-class Kind(Enum):
-    """Kinds of findings."""
-
-    NUMBER = "another number"
-    LABEL = "another word in a label's place"
-    OPEN = "another number, on a page or for inputs read with doubt"
-    UNREAD = "number not read"
-    DOUBT = "number read with doubt"
-    MISREAD = "word or mark read otherwise"
-    LOST = "word or mark not read"
-    FOREIGN = "text that the program does not print"
-    ROW_LOST = "row not read"
-    ROW_TWICE = "row printed twice"
-    TWICE = "number printed twice"
-    DISORDER = "row out of order"
-
-
-VERDICTS = MappingProxyType(
-    {
-        Kind.NUMBER: Verdict.DIFFERS,
-        Kind.LABEL: Verdict.DIFFERS,
-        Kind.OPEN: Verdict.INCOMPLETE,
-        Kind.UNREAD: Verdict.INCOMPLETE,
-        Kind.DOUBT: Verdict.AS_READ,
-        Kind.MISREAD: Verdict.AS_READ,
-        Kind.LOST: Verdict.AS_READ,
-        Kind.FOREIGN: Verdict.AS_READ,
-        Kind.ROW_LOST: Verdict.AS_READ,
-        Kind.ROW_TWICE: Verdict.AS_READ,
-        Kind.TWICE: Verdict.AS_READ,
-        Kind.DISORDER: Verdict.AS_READ,
-    }
-)
-"""The verdict of each kind of finding. A page has the gravest one, IDENTICAL without findings."""
-
-
-class Finding(NamedTuple):
-    """Something that was not read as the program prints it.
-
-    Parameters
-    ----------
-    kind : Kind
-        What it is.
-    name : str
-        The number, or the row's labels, "" for other text.
-    start, stop : int
-        Its place in the text; of something lost, the place where it would be.
-    read : str
-        What the text has there.
-    printed : str
-        What the program prints.
-    """
-
-    kind: Kind
-    name: str
-    start: int
-    stop: int
-    read: str
-    printed: str
-
-
-class Number(NamedTuple):
-    """A number of the page: as the program prints it, as read ("" if lost), and its place."""
-
-    printed: str
-    read: str
-    start: int
-    stop: int
-
-
-@dataclass(frozen=True)
-class Verification:
-    """A printout with its verdict.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        What its findings give by `VERDICTS`.
-    scene : mapping of str to str
-        The scene as typed; empty if it was not recovered.
-    numbers : mapping of str to Number
-        Each number as printed and as read.
-    findings : tuple of Finding
-        All that was not read as the program prints it.
-    unseen : mapping of str to int
-        Digits of inputs that no other number of the page confirms, by input.
-    explanation : str
-        What explains a page that differs, "" if nothing of the list does.
-    page : tuple of PrintedChar
-        The page that the program prints for the scene, each character with its place.
-    text : str
-        The whole text, to which places refer.
-    span : tuple of int
-        First offset of the printout in it, and the end.
-    """
-
-    verdict: Verdict
-    scene: Mapping[str, str] = field(default_factory=dict)
-    numbers: Mapping[str, Number] = field(default_factory=dict)
-    findings: tuple[Finding, ...] = ()
-    unseen: Mapping[str, int] = field(default_factory=dict)
-    explanation: str = ""
-    page: tuple[PrintedChar, ...] = ()
-    text: str = field(default="", repr=False)
-    span: tuple[int, int] = (0, 0)
-
-    def line_of(self, offset: int) -> int:
-        """Return the number of the line of an offset, from 1."""
-        return len(re.findall("\r\n?|\n", self.text[:offset])) + 1
 
 
 def judge(text: str, given: Mapping[str, str] | None = None) -> list[Verification]:
@@ -215,12 +91,6 @@ def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
     from .explain import explained
 
     return explained(verification)
-
-
-def verdict_of(findings: Sequence[Finding]) -> Verdict:
-    """Return the gravest verdict of some findings."""
-    verdicts = {VERDICTS[finding.kind] for finding in findings}
-    return next((verdict for verdict in Verdict if verdict in verdicts), Verdict.IDENTICAL)
 
 
 def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
@@ -318,12 +188,18 @@ class Comparison:
 
     # --- places -----------------------------------------------------------------------------------
 
-    def _place(self, name: str, glyphs: Sequence[Glyph], cell: int | None = None) -> tuple[int, int]:
+    def _place(
+        self, name: str, glyphs: Sequence[Glyph], cell: int | None = None
+    ) -> tuple[int, int]:
         """Return the place of glyphs, or the gap where a number's, or a cell's, would be."""
         if glyphs:
             return glyphs[0].offset, glyphs[-1].offset + 1
         slot = "ANGLES" if name in ANGLES else name
-        at = cell if cell is not None else next((j for j, one in enumerate(CELLS) if one.name == slot), 0)
+        at = (
+            cell
+            if cell is not None
+            else next((j for j, one in enumerate(CELLS) if one.name == slot), 0)
+        )
         read = {j: [glyph] for j, glyph in self.reading.chars.items()}
         for j, one in enumerate(CELLS):
             names = ANGLES if one.name == "ANGLES" else (one.name,)
@@ -367,7 +243,9 @@ class Comparison:
         ]
         findings += self._reply_findings()
         findings += [
-            self.finding(self._word_kind(word), word.first.name, word.glyphs, word.printed, word.cells[0])
+            self.finding(
+                self._word_kind(word), word.first.name, word.glyphs, word.printed, word.cells[0]
+            )
             for word in self.words
             if word.read != word.printed
         ]
@@ -473,7 +351,9 @@ class Comparison:
         for name, slot in self.reading.repeated:
             printed = self.fields.get(name, "")
             is_other = bool(printed) and self.is_contradiction(name, slot, printed)
-            finding = self.finding(Kind.NUMBER if is_other else Kind.TWICE, name, slot.glyphs, printed)
+            finding = self.finding(
+                Kind.NUMBER if is_other else Kind.TWICE, name, slot.glyphs, printed
+            )
             by_row.setdefault(ROW_OF.get(name, 0), []).append(finding)
         for row, glyph in self.reading.disorder:
             repeated = by_row.get(row, [])
@@ -499,9 +379,7 @@ class Comparison:
         if not numbers:
             return [*findings]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
-        digits = sum(
-            map(str.isdigit, "".join(f.read for f in findings if f.kind is Kind.FOREIGN))
-        )
+        digits = sum(map(str.isdigit, "".join(f.read for f in findings if f.kind is Kind.FOREIGN)))
         is_unsure = digits >= MAX_FOREIGN_DIGITS or any(map(self._is_doubtful_input, findings))
         is_open = any(finding.name in INPUTS for finding in unread)
         is_open |= is_unsure and len(numbers) + len(unread) > MAX_ALTERED
