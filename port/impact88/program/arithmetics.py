@@ -23,6 +23,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    Function = Callable[[Any], Any]
+
 
 class Arithmetic:
     """The operations on numbers that the listing uses.
@@ -35,12 +37,12 @@ class Arithmetic:
 
     name: str
     read: Callable[[str, int], tuple[Any, int]]
-    LET: Callable[[Any], Any]
-    NEXT: Callable[[Any], Any]
-    INT: Callable[[Any], Any]
-    ABS: Callable[[Any], Any]
-    SIN: Callable[[Any], Any]
-    COS: Callable[[Any], Any]
+    LET: Function
+    NEXT: Function
+    INT: Function
+    ABS: Function
+    SIN: Function
+    COS: Function
     write: Callable[[Any], str]
     errors: Mapping[type[Exception], Callable[[], ApplesoftError]]
     unset: Any

@@ -12,55 +12,22 @@ that are only printed. Anything else raises `NotCompiled`, and is for the emulat
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..apple.emulator.tokens import list_text, split_number, tokenise
 
 OPERATIONS = {
-    "LINE": (0, 0),
-    "CONSTANT": (0, 1),
-    "VARIABLE": (0, 1),
-    "ELEMENT": (2, 1),
-    "PLACE": (2, 1),
-    "ADD": (2, 1),
-    "SUBTRACT": (2, 1),
-    "MULTIPLY": (2, 1),
-    "DIVIDE": (2, 1),
-    "POWER": (2, 1),
-    "COMPARE": (2, 1),
-    "AND": (2, 1),
-    "OR": (2, 1),
-    "NEGATE": (1, 1),
-    "INT": (1, 1),
-    "ABS": (1, 1),
-    "SGN": (1, 1),
-    "SQR": (1, 1),
-    "EXP": (1, 1),
-    "LOG": (1, 1),
-    "SIN": (1, 1),
-    "COS": (1, 1),
-    "TAN": (1, 1),
-    "ATN": (1, 1),
-    "ROUND": (1, 1),
-    "TOUCH": (0, 0),
-    "STORE": (1, 0),
-    "STORE_ELEMENT": (2, 0),
-    "DIM": (2, 0),
-    "PRINT": (1, 0),
-    "TEXT": (0, 0),
-    "STRING": (0, 0),
-    "SHOW": (0, 0),
-    "ECHO": (0, 0),
-    "READ": (0, 1),
-    "TYPED": (0, 1),
-    "UNLESS": (1, 0),
-    "GOTO": (0, 0),
-    "GOSUB": (0, 0),
-    "RETURN": (0, 0),
-    "FOR": (1, 0),
-    "NEXT": (0, 0),
-    "END": (0, 0),
+    name: (taken, left)
+    for taken, left, names in (
+        (0, 0, "LINE TOUCH TEXT STRING SHOW ECHO GOTO GOSUB RETURN NEXT END"),
+        (0, 1, "CONSTANT VARIABLE READ TYPED"),
+        (1, 0, "STORE PRINT UNLESS FOR"),
+        (1, 1, "NEGATE ROUND INT ABS SGN SQR EXP LOG SIN COS TAN ATN"),
+        (2, 0, "STORE_ELEMENT DIM"),
+        (2, 1, "ELEMENT PLACE ADD SUBTRACT MULTIPLY DIVIDE POWER COMPARE AND OR"),
+    )
+    for name in names.split()
 }
 """The operations by name: how many numbers each takes from the stack, and leaves there.
 
@@ -68,13 +35,14 @@ TOUCH makes a variable, which Applesoft does before it computes the value; PLACE
 frame an assignment to an element; STRING and SHOW set and print a text variable; READ takes a
 reply, TYPED a value typed into a line; UNLESS jumps when the condition is 0."""
 JUMPS = ("UNLESS", "GOTO", "GOSUB", "RETURN", "FOR", "NEXT", "END")
+"""Operations that decide which step follows."""
 CODES = {name: code for code, name in enumerate(OPERATIONS)}
 
 MAX_DEPTH = 15  # numbers on the stack of applesoft.c
 MAX_VARIABLES = 64  # bits that tell which are assigned
 MAX_STRINGS = 8
 MAX_TEXTS = 256  # one byte of STRING's number
-FUNCTIONS = ("INT", "ABS", "SGN", "SQR", "EXP", "LOG", "SIN", "COS", "TAN", "ATN")
+FUNCTIONS = frozenset("INT ABS SGN SQR EXP LOG SIN COS TAN ATN".split())
 COMPARISONS = {">": 1, "=": 2, "<": 4}
 """Bits of COMPARE's number."""
 LEVELS: tuple[Mapping[str, str], ...] = (
@@ -111,7 +79,8 @@ class Token(NamedTuple):
     stop: int
 
 
-END_OF_LINE = Token("sign", ":", 0, 0)
+Statement = list[Token]
+NO_TOKEN = Token("", "", 0, 0)
 
 
 def spell(tokens: bytes) -> str:
@@ -119,12 +88,18 @@ def spell(tokens: bytes) -> str:
     return "".join(map(list_text, tokens))
 
 
-def scan(text: str) -> list[Token]:
-    """Return the tokens of a line that `spell` wrote."""
-    return [
-        Token(match.lastgroup or "", match[match.lastgroup or 0], *match.span())
-        for match in _TOKEN.finditer(text)
-    ]
+def split_statements(text: str) -> Iterator[Statement]:
+    """Yield the statements of a line that `spell` wrote; empty ones are left out."""
+    statement: Statement = []
+    for match in _TOKEN.finditer(text):
+        if match[0] != ":":
+            kind = match.lastgroup or ""
+            statement.append(Token(kind, match[kind], *match.span()))
+        elif statement:
+            yield statement
+            statement = []
+    if statement:
+        yield statement
 
 
 def program_lines(text: str) -> Iterator[tuple[int, bytes]]:
@@ -139,28 +114,16 @@ def key_of(name: str) -> str:
     return name[:2] + name[-1] if name[2:] and name[-1] in "$%" else name[:2]
 
 
-def typed_constant(tokens: Sequence[Token], at: int, inputs: Iterable[str]) -> str | None:
-    """Return the input that the statement at ``at`` sets to a constant; None for another statement.
+def typed_constant(statement: Sequence[Token], inputs: Collection[str]) -> str | None:
+    """Return the input that a statement sets to a constant; None for another statement.
 
     A scene's value is typed in place of that constant."""
-    name, equals, *rest = [*statement(tokens, at), END_OF_LINE, END_OF_LINE]
-    if name.text == "LET":
-        return typed_constant(tokens, at + 1, inputs)
-    constant = [token for token in rest if token is not END_OF_LINE]
-    is_constant = constant and all(t.kind == "number" or t.text in "+-" for t in constant)
-    key = key_of(name.text)
-    return key if equals.text == "=" and is_constant and key in inputs else None
-
-
-def statement(tokens: Sequence[Token], at: int) -> list[Token]:
-    """Return the tokens from ``at`` to the end of that statement."""
-    ends = (k for k in range(at, len(tokens)) if tokens[k].text == ":" or is_remark(tokens[k]))
-    return list(tokens[at : next(ends, len(tokens))])
-
-
-def is_remark(token: Token) -> bool:
-    """Return True for REM or DATA with its text."""
-    return token.kind in ("remark", "data")
+    tokens = [token for token in statement if token.text != "LET"]
+    if len(tokens) < 3 or tokens[1].text != "=":
+        return None
+    is_constant = all(token.kind == "number" or token.text in ("+", "-") for token in tokens[2:])
+    key = key_of(tokens[0].text)
+    return key if is_constant and key in inputs else None
 
 
 class Steps(NamedTuple):
@@ -218,7 +181,7 @@ class _Compiler:
         self._array = ""
         self._depth = 0
         self._line = 0
-        self._tokens: list[Token] = []
+        self._tokens: Statement = []
         self._at = 0
         self._conditions: list[int] = []  # UNLESS steps of this line, which jump to the next one
 
@@ -231,14 +194,13 @@ class _Compiler:
             for name in self._kept.get(self._line, ()):
                 self._emit("VARIABLE", self._variable(name))
                 self._emit("STORE", self._variable(f"{name}'"))
-            self._tokens, self._at, self._conditions = scan(spell(tokens)), 0, []
-            while self._at < len(self._tokens):
-                if self._peek().text == ":" or is_remark(self._peek()):
-                    self._at += 1
-                    continue
-                self._statement()
-                if not is_remark(self._peek()):
-                    self._take(":")
+            self._conditions = []
+            for self._tokens in split_statements(spell(tokens)):
+                self._at = 0
+                if self._tokens[0].kind not in ("remark", "data"):
+                    self._statement()
+                    if self._at < len(self._tokens):
+                        raise NotCompiled(f"{self._peek().text!r} in line {self._line}")
             for place in self._conditions:
                 steps[place] = ("UNLESS", len(steps))
         self._emit("END")
@@ -256,7 +218,7 @@ class _Compiler:
     # --- places and steps ---
 
     def _peek(self) -> Token:
-        return self._tokens[self._at] if self._at < len(self._tokens) else END_OF_LINE
+        return self._tokens[self._at] if self._at < len(self._tokens) else NO_TOKEN
 
     def _take(self, *expected: str) -> Token:
         """Return the next token, one of ``expected`` if any are named. Raises NotCompiled."""
@@ -272,9 +234,6 @@ class _Compiler:
         if token.kind != kind:
             raise NotCompiled(f"{token.text!r} in line {self._line}")
         return token.text
-
-    def _at_end(self) -> bool:
-        return self._peek().text == ":" or is_remark(self._peek())
 
     def _emit(self, operation: str, number: int = 0) -> int:
         """Append a step and return its index."""
@@ -339,12 +298,12 @@ class _Compiler:
     def _assign_real(self, name: str) -> None:
         variable = self._variable(name)
         inputs = self._result.inputs
-        constant = typed_constant(self._tokens, self._at - 1, inputs)
+        constant = typed_constant(self._tokens, inputs)
         self._take("=")
         self._emit("TOUCH", variable)
         if constant and not self._conditions:
             self._emit("TYPED", inputs.index(constant))
-            self._at += len(statement(self._tokens, self._at))
+            self._at = len(self._tokens)
         else:
             self._formula()
         self._emit("STORE", variable)
@@ -354,7 +313,7 @@ class _Compiler:
 
     def _print(self) -> None:
         newline = True
-        while not self._at_end():
+        while self._at < len(self._tokens):
             token = self._peek()
             newline = token.text != ";"
             if not newline:

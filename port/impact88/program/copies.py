@@ -28,8 +28,8 @@ from .compiler import (
     Token,
     compile_program,
     key_of,
-    scan,
     spell,
+    split_statements,
     typed_constant,
 )
 from .run import Run
@@ -122,7 +122,7 @@ class ListingCopy:
         if not self._lines:
             raise UserError("holds no program; expected numbered lines of Applesoft", path)
         self._statements = [
-            statement for _, tokens in self._lines for statement in _split(scan(spell(tokens)))
+            statement for _, tokens in self._lines for statement in split_statements(spell(tokens))
         ]
         self._variables = _find_variables(self._statements)
         self._names = {key: name for name, key in self._variables.items()}
@@ -256,13 +256,13 @@ class ListingCopy:
         for number, tokens in self._lines:
             text = spell(tokens)
             pieces, end = [], 0
-            for statement in _split(scan(text)):
+            for statement in split_statements(text):
                 start, stop, typed = statement[0].start, statement[-1].stop, ""
                 if statement[0].kind == "data":
                     typed = " DATA " + ",".join(self._data(statement[0].text, read, scene))
                 elif statement[0].text == "IF":
                     break  # what follows is done at times only: its numbers are the copy's
-                elif key := typed_constant(statement, 0, self._names):
+                elif key := typed_constant(statement, self._names):
                     start = next(token.stop for token in statement if token.text == "=")
                     typed = scene.get(self._names[key], text[start:stop])
                 if typed:
@@ -276,22 +276,9 @@ class ListingCopy:
             yield scene.get(self._names.get(next(read, ""), ""), item)
 
 
-def _split(tokens: Sequence[Token]) -> Iterator[list[Token]]:
-    """Yield the statements of a line that are not empty."""
-    statement: list[Token] = []
-    for token in tokens:
-        if token.text != ":":
-            statement.append(token)
-        elif statement:
-            yield statement
-            statement = []
-    if statement:
-        yield statement
-
-
 def _without_remarks(tokens: bytes) -> list[str]:
     """Return the statements of a line, for comparison."""
-    statements = _split(scan(spell(tokens)))
+    statements = split_statements(spell(tokens))
     return ["".join(t.text for t in s) for s in statements if s[0].kind != "remark"]
 
 
@@ -312,7 +299,7 @@ def _find_variables(statements: Sequence[Sequence[Token]]) -> dict[str, str]:
         target = names[0] if names and first and statement[first - 1].kind == "name" else ""
         if statement[0].text in ("READ", "INPUT"):
             numbers |= {name for name in names if name[-1] != "$"}
-        elif target and typed_constant(statement, 0, [target]):
+        elif target and typed_constant(statement, [target]):
             numbers.add(target)
         elif target:
             uses.setdefault(target, set()).update(set(names[1:]) - {target})

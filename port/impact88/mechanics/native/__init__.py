@@ -43,16 +43,11 @@ def _declare_functions(loaded: ctypes.CDLL) -> ctypes.CDLL:
     """Declare argument and result types of the library's functions and return it. Raises
     AttributeError where one is missing."""
     number, address = ctypes.c_int64, ctypes.c_void_p
-    loaded.run_program.argtypes, loaded.run_program.restype = [address], None
     loaded.solve_impacts.argtypes, loaded.solve_impacts.restype = [address, number, number], None
     loaded.solve_rows.argtypes = [*[address] * 4, *[number] * 3]
     loaded.solve_rows.restype = None
     loaded.formulas.restype = loaded.results.restype = ctypes.c_char_p
-    loaded.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
-    loaded.write_numbers.argtypes = [address, number, address, address]
-    loaded.instructions.restype = loaded.operations.restype = ctypes.c_char_p
-    for counts in (loaded.replayed_together, loaded.most_places):
-        counts.restype = number
+    loaded.instructions.restype = ctypes.c_char_p
     return loaded
 
 

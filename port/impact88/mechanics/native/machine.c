@@ -1,5 +1,4 @@
-/* The compiled part: the impact of many scenes in doubles (impacts.h), and the replay of many scenes in
-   the Apple's arithmetic (replay.h, texts.h).
+/* The compiled part: the impact of many scenes in doubles (impacts.h).
 
    Every operation is the IEEE one, rounded by itself: the file must be compiled with
    -ffp-contract=off. No Python here: the functions are called through ctypes, which releases the
@@ -50,8 +49,6 @@
 #define EACH INDEPENDENT LOOP
 
 #include "impacts.h"
-#include "replay.h"
-#include "texts.h"
 
 EXPORT const char *instructions(void)
 {

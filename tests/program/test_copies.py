@@ -1,0 +1,163 @@
+"""An office's copy of the listing: compiled or emulated it prints the same; what is no copy."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import captures
+import pytest
+
+from impact88.errors import UserError
+from impact88.files import packaged_text
+from impact88.names import SCENE
+from impact88.program.copies import ListingCopy
+from impact88.program.replay import replay
+from impact88.program.run import run
+from impact88.program.scene import sample
+
+LISTING = packaged_text("impact88.legacy", "impact.bas")
+SCENES = [case["scene"] for case in captures.scenes()[::80]]
+COLUMNS = {name: [scene[name] for scene in SCENES] for name in SCENE}
+
+
+def line(number: int) -> str:
+    """Return a line of the listing."""
+    return re.findall(rf"(?m)^{number} .*$", LISTING)[0]
+
+
+def changed(*lines: tuple[int, str]) -> str:
+    """Return the listing with other statements in some lines."""
+    text = LISTING
+    for number, statements in lines:
+        text = text.replace(line(number), f"{number} {statements}")
+    return text
+
+
+def added(number: int, statements: str) -> str:
+    """Return the listing with statements added to a line."""
+    return LISTING.replace(line(number), f"{line(number)}: {statements}")
+
+
+def renamed(names: dict[str, str]) -> str:
+    """Return the listing with other names of variables, texts unchanged."""
+    parts = re.split(r'(".*?"| REM .*)', LISTING)
+    for k in range(0, len(parts), 2):
+        parts[k] = re.sub(r"[A-Z][A-Z0-9]*", lambda m: names.get(m[0], m[0]), parts[k])
+    return "".join(parts)
+
+
+def rounded(number: int) -> str:
+    """Return the listing with results of a line rounded to the nearest."""
+    return LISTING.replace(line(number), re.sub(r"\)\) /", ") + .5) /", line(number)))
+
+
+COMPILED = {
+    "the listing": LISTING,
+    "rounded": rounded(760),
+    "pi": LISTING.replace("3.14159265", "3.1416"),
+    "data": changed((280, "E = .1:MU = .5:EM = - 1"), (350, "LET N = 6: LET M = 6")),
+    "READ": changed(
+        (280, "READ E,MU,EM: DATA .1,.5,-1"),
+        (290, "READ DA,DB,GA,PA,PB,TA,TB"),
+        (310, "READ MA,MB,IA,IB: DATA 1,2,3,4,5,6,7,100,90,2000,1000"),
+    ),
+    "INPUT": changed((280, 'INPUT "E,MU,EM ";E,MU,EM'), (310, "INPUT MA,MB: INPUT IA,IB")),
+    "order": changed((730, line(740)[4:]), (740, line(730)[4:])),
+    "80 columns": added(610, 'PRINT CHR$ (9);"80N"'),
+    "functions": added(
+        620, "PRINT SQR (MA); ATN (UY / MA); TAN (GA); LOG (MB); EXP (-E); SGN (UX)"
+    ),
+    "products": LISTING.replace("UX ^ 2", "UX * UX"),
+    "no pivoting": changed((1090, "IF RO > I THEN 1110")),
+    "loop too long": changed((1020, "FOR RO = 1 TO M + 1: IF RO = I THEN 1060")),
+    "sign": LISTING.replace("2 * EM - 1", "2 * EM + 1"),
+    "number after IF": changed((510, "IF MU > - 10 THEN MU = .5: GOTO 530")),
+    "texts": changed((720, 'Q$ = "***" + "**": PRINT : PRINT Q$;R$')),
+    "renamed": renamed({"UX": "V1", "MA": "M1", "EM": "R", "PA": "P1"}),
+    "converted": changed((210, "INPUT S1,S2,WA:UX = S1 * 1.46667:UY = S2 * 1.46667")),
+    "weights": changed((310, "INPUT W1,W2:MA = W1 / 32.2:MB = W2 / 32.2:IA = 3728:IB = 1961")),
+    "RETURN within a loop": changed((1150, "A(I,OL) = A(I,OL) / AP: IF OL > M THEN RETURN"))
+    + "1155 NEXT OL: RETURN\n",
+}
+"""Copies that compile."""
+EMULATED = {
+    "slot 3": LISTING.replace('"PR# " + "0"', '"PR# " + "3"'),
+    "speed": changed((610, "SPEED= 255: PRINT")),
+    "ON": changed((510, "ON (MU > - 10) + 1 GOTO 520,530")),
+    "columns": changed((720, 'PRINT TAB( 5);"*****","*****"')),
+    "STEP": changed((1020, "FOR RO = M TO 1 STEP - 1: IF RO = I THEN 1060")),
+    "two texts": changed((720, 'Q$ = "***":R$ = Q$ + "**": PRINT R$')),
+    "another array": added(700, "BR(1) = XA"),
+    "RND": added(620, "X = RND (1)"),
+}
+"""Copies that only the emulator runs."""
+
+
+def copy_of(text: str, folder: Path) -> ListingCopy:
+    path = folder / "office.bas"
+    path.write_text(text, "utf-8")
+    return ListingCopy(str(path))
+
+
+@pytest.mark.parametrize("name", [*COMPILED, *EMULATED])
+def test_pages_are_those_of_the_emulator(name, tmp_path):
+    copy = copy_of({**COMPILED, **EMULATED}[name], tmp_path)
+    copy.check_variables()
+    assert (copy.steps is not None) == (name in COMPILED)
+    count = len(SCENES) if name in COMPILED else 2
+    columns = {name: column[:count] for name, column in COLUMNS.items()}
+    assert copy.pages(columns) == [copy.run(scene).printout for scene in SCENES[:count]]
+
+
+def test_a_scene_replaces_the_copys_numbers(tmp_path):
+    for name in ("data", "READ", "INPUT", "renamed"):
+        page = copy_of(COMPILED[name], tmp_path).run(sample(1)).page
+        assert page.endswith(run(sample(1)).page[-400:])
+
+
+def test_the_listing_itself_prints_what_replay_does(tmp_path):
+    copy = copy_of(LISTING, tmp_path)
+    assert copy.changed_lines() == []
+    assert copy.pages(COLUMNS) == replay(COLUMNS, pages=True).pages
+
+
+def test_changed_lines(tmp_path):
+    text = changed((490, "A(6,5) = 2 * EM + 1"), (100, "REM OURS")) + "785 REM MORE\n"
+    (change, *others) = copy_of(text.replace("1170 RETURN\n", ""), tmp_path).changed_lines()
+    assert (change.line, change.copy) == (490, "A(6,5) = 2 * EM + 1")
+    assert change.restored.startswith("A(6,5) = 2 * EM - 1:")
+    assert [(other.line, other.copy) for other in others] == [(1170, "")]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "holds no program"),
+        ("no numbers here", "is not an Applesoft program"),
+        ("10 INPUT A$: GOTO 10", "asks for more than a scene holds"),
+        ("10 GOTO 10", "does not end within 100,000 statements"),
+    ],
+)
+def test_what_is_no_copy_is_refused(text, message, tmp_path):
+    with pytest.raises(UserError, match=f"office.bas: .*{message}"):
+        copy_of(text, tmp_path).run({})
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (added(190, 'INPUT "SLOT ";S'), r"asks for S \(INPUT\)"),
+        (LISTING.replace("MA = 143.5:", "").replace('"MA= "', '"MASS "'), "MA: no variable"),
+    ],
+)
+def test_variables_that_a_scene_does_not_give_are_named(text, message, tmp_path):
+    with pytest.raises(UserError, match=message):
+        copy_of(text, tmp_path).check_variables()
+
+
+def test_a_copy_without_m_runs_bodies_only(tmp_path):
+    copy = copy_of(renamed({"M": "QQ"}), tmp_path)
+    assert copy.run(sample(1)).page == run(sample(1)).page
+    with pytest.raises(UserError, match="no variable of the copy holds M"):
+        copy.run(sample(2))
