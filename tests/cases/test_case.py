@@ -84,7 +84,7 @@ def test_options_name_the_view_of_a_file_that_names_none() -> None:
 def test_with_is_the_edited_file() -> None:
     case = Case.loads('units = "us"\nUX = 30\nDA = "5 ft"\nUX_source = "EDR"')
     edited = Case.of({"units": "us", "UX": "30 +- 2", "DA": "5 ft"})
-    assert case.with_(UX="+- 2") == edited
+    assert case.with_(UX="+- 2").entries == edited.entries
     assert case.with_(UX="+- 2").entries["UX"].high == pytest.approx(32 * 22 / 15)
     in_feet = Case.of({"units": "chapter", "UX": 44}).with_(UX="+- 2 mph")
     assert in_feet.entries["UX"].low == pytest.approx(44 - 2 * 22 / 15)
@@ -157,6 +157,10 @@ def test_point_masses_along_one_line_need_no_plane() -> None:
     other_way = case.with_(UX="5", VX="20")
     assert other_way.texts["GA"] == "0"
     assert case.with_(UX="20", VX="5").texts["GA"] == "180"
+    courses = Case.of({"M": 4, "HA": 0, "HB": 0, "SB": 10, "SAF": 3, "HAF": 0})
+    assert courses.texts["GA"] == "180"
+    assert courses.with_(SA="5", SAF="", HAF="").texts["GA"] == "0"
+    assert courses.with_(SA="0").texts["GA"] == "0"
     assert "MU is not used" in case.with_(MU="0.5").remarks[1]
     locked = case.with_(MU="locked")
     assert (locked.texts["MU"], locked.texts["GA"]) == ("-10", "0")

@@ -9,45 +9,33 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..decimals import to_double, to_text
 from ..errors import UserError, quoted
 from ..files import decode, display_name, read_bytes
-from ..names import (
-    ANGLE,
-    DEFAULT_M,
-    NUMBER,
-    PERCENT,
-    PIVOT,
-    SCENE,
-    SPIN,
-    TIME,
-    did_you_mean,
-    quantity,
-)
+from ..names import DEFAULT_M, PIVOT, SCENE, did_you_mean, quantity
 from .amounts import TOLERANCE, Amount, normalized, read, units_in
 from .estimates import estimate
 from .motion import contact_point, courses, headings, line_of_motion
 from .plausibility import implausible
 from .scenefile import ABOUT, INPUTS, MAX_BYTES, SOURCE, read_toml, write_toml
-from .units import PLAIN, View, system_using
+from .units import DIMENSIONS, PLAIN, View, system_using
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
 ESTIMATE = "estimate"
 COURSE = "course"
 LOCKED = "locked"
 OPTIONAL_OF_POINTS = "DA DB PA PB TA TB IA IB EM GA E MU WA WB".split()
 """Inputs that a scene of point masses need not have."""
+MOVES = ("CX", "CY")
 SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
 """Length and width of each vehicle: for an estimate of its inertia, and its outline in drawings."""
 MAX_TYPED = 70  # characters of a value; three and their commas fit the 239 that INPUT keeps
-_UNITLESS = (NUMBER, PERCENT, ANGLE, SPIN, TIME)
-"""Rules whose bare numbers mean the same in each system."""
 
 
 @dataclass(frozen=True)
@@ -111,22 +99,15 @@ class Case:
     defaults: View = field(default=PLAIN, repr=False)
 
     @classmethod
-    def load(
-        cls,
-        path: str,
-        *,
-        units: str | None = None,
-        axes: str | None = None,
-        headings: str | None = None,
-    ) -> Case:
+    def load(cls, path: str, **view: str | None) -> Case:
         """Return the case in a TOML file.
 
         Parameters
         ----------
         path : str
             The file, ``-`` for standard input.
-        units, axes, headings : str, optional
-            The view of a file that names none.
+        **view : str or None
+            ``units``, ``axes`` and ``headings`` of a file that names none.
 
         Raises
         ------
@@ -134,19 +115,10 @@ class Case:
             For a file that cannot be read as a case; the message names file, line and entry.
         """
         source = display_name(path)
-        text = decode(read_bytes(path, MAX_BYTES), source)
-        return cls.loads(text, source, units=units, axes=axes, headings=headings)
+        return cls.loads(decode(read_bytes(path, MAX_BYTES), source), source, **view)
 
     @classmethod
-    def loads(
-        cls,
-        text: str,
-        source: str = "scene",
-        *,
-        units: str | None = None,
-        axes: str | None = None,
-        headings: str | None = None,
-    ) -> Case:
+    def loads(cls, text: str, source: str = "scene", **view: str | None) -> Case:
         """Return the case in the text of a TOML file.
 
         Parameters
@@ -155,8 +127,8 @@ class Case:
             The document.
         source : str, default "scene"
             Its name in messages.
-        units, axes, headings : str, optional
-            The view of a document that names none.
+        **view : str or None
+            See `load`.
 
         Raises
         ------
@@ -165,8 +137,7 @@ class Case:
         """
         texts, lines = read_toml(text, source)
         places = {name: f"{source}, line {number}" for name, number in lines.items()}
-        view = View.of(units=units, axes=axes, headings=headings)
-        return cls.of(texts, source, view, places)
+        return cls.of(texts, source, View.of(**view), places)
 
     @classmethod
     def of(
@@ -223,27 +194,22 @@ class Case:
         for name, value in changes.items():
             text = normalized(value) if isinstance(value, str) else value
             if isinstance(text, str) and text.startswith(TOLERANCE):
-                text = f"{self._middle(name, text)} {text}"
+                text = f"{self._middle(name)} {text}"
             texts[name] = text
             if name + SOURCE not in changes:
                 texts.pop(name + SOURCE, None)
         places = {**self.places, **dict.fromkeys(changes, where)} if where else self.places
         return Case.of(texts, self.source, self.defaults, places)
 
-    def _middle(self, name: str, tolerance: str) -> str:
+    def _middle(self, name: str) -> str:
         """Return the present value of an entry as text, to put a tolerance around."""
-        text = self.written.get(name, "0" if name in ("CX", "CY") else "")
+        text = str(self.written.get(name, "0" if name in MOVES else ""))
         amount = self.entries.get(name)
-        if isinstance(text, str) and text and not (amount and amount.varies):
-            if text.startswith(ESTIMATE) or not text[-1:].isdigit():
-                return text
-            has_unit = any(c.isalpha() for c in tolerance)
-            return f"{text} {self.view.unit(name)}" if has_unit else text
-        if amount is None:
-            raise UserError(f"{name} = {tolerance}: {name} has no value to put it around")
-        if isinstance(text, str) and text.startswith(ESTIMATE):
+        if amount is None or amount.share:
+            return text
+        if text.startswith(ESTIMATE):
             return ESTIMATE
-        return f"{self.view.shown_text(name, amount.value)} {self.view.unit(name)}".rstrip()
+        return f"{self.view.shown_text(name, amount.value)} {self.view.unit(name)}"
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -333,6 +299,7 @@ class _Reader:
         self.sizes: dict[str, Amount] = {}
         self.estimated: list[str] = []
         self.remarks: list[str] = []
+        self.is_inferred = False
 
     def case(self) -> Case:
         """Return the case."""
@@ -344,7 +311,7 @@ class _Reader:
             self._infer_units()
         self._read_entries()
         self._set_estimates()
-        with self._naming(self.source):
+        with self._naming(""):
             self.entries = contact_point(self.entries)
         self._set_headings()
         if self.entries["M"].value == 4:
@@ -369,109 +336,87 @@ class _Reader:
         )
 
     @contextmanager
-    def _naming(self, place: str) -> Iterator[None]:
-        """Context in which errors name a place."""
+    def _naming(self, name: str) -> Iterator[None]:
+        """Context in which errors name the place of an entry."""
         try:
             yield
         except UserError as error:
-            raise UserError(str(error), place) from None
-
-    def _place(self, name: str) -> str:
-        return self.places.get(name, self.source)
+            raise UserError(str(error), self.places.get(name, self.source)) from None
 
     def _check_names(self) -> None:
         """Raise UserError for a name that is none, and for a source of nothing."""
         for name in (*self.given, *self.sources):
-            if name not in INPUTS:
-                hint = did_you_mean(name, (*INPUTS, *ABOUT)) or "; expected a name of the listing"
-                raise UserError(
-                    f"{quoted(name)} is not an entry of a scene{hint}", self._place(name)
-                )
-        for name in self.sources:
-            if name not in self.given:
-                raise UserError(f"{name}{SOURCE} is given, and {name} is not", self._place(name))
+            with self._naming(name):
+                if name not in INPUTS:
+                    hint = did_you_mean(name, (*INPUTS, *ABOUT))
+                    raise UserError(f"{quoted(name)} is not an entry of a scene{hint}")
+                if name not in self.given:
+                    raise UserError(f"{name}{SOURCE} is given, and {name} is not")
 
     def _infer_units(self) -> None:
-        """Take the system that the units beside the numbers name; bare numbers are refused then."""
-        used, bare = [], []
+        """Take the system that the units beside the numbers name."""
+        used: list[tuple[str, str]] = []
         for name, value in self.given.items():
-            if not isinstance(value, str) or not any(map(str.isdigit, value)) or name == "M":
-                continue
-            with self._naming(self._place(name)):
-                units = (
-                    units_in(name, value.removeprefix(ESTIMATE) or "0")
-                    if (not value.startswith(ESTIMATE))
-                    else []
-                )
-            used += units
-            if not units and not value.startswith(ESTIMATE):
-                bare.append(name)
-        with self._naming(self.source):
-            units_name = system_using(used)
-        if not units_name:
-            return
-        for name in bare:
-            if quantity(name).unit not in _UNITLESS and read(name, str(self.given[name])).value:
-                raise UserError(
-                    f"{name} = {self.given[name]} has no unit, and other values have; add one, or "
-                    f'units = "{units_name}" for numbers without (--units {units_name})',
-                    self._place(name),
-                )
-        self.view = View(units_name, self.view.axes, self.view.headings)
+            if any(map(str.isdigit, str(value))) and not str(value).startswith(ESTIMATE):
+                with self._naming(name):
+                    used += units_in(name, value) if isinstance(value, str) else []
+        with self._naming(""):
+            units = system_using(used)
+        self.view, self.is_inferred = replace(self.view, units=units), bool(units)
 
     def _read_entries(self) -> None:
         """Read every entry but the estimates."""
         for name, value in {"M": DEFAULT_M, **self.given}.items():
-            with self._naming(self._place(name)):
+            if name in ("IA", "IB") and str(value).startswith(ESTIMATE):
+                continue
+            with self._naming(name):
                 amount = self._read(name, value)
-            if amount is not None:
-                (self.sizes if name in ("LA", "BA", "LB", "BB") else self.entries)[name] = amount
+            (self.sizes if name in ("LA", "BA", "LB", "BB") else self.entries)[name] = amount
 
-    def _read(self, name: str, value: str | Amount) -> Amount | None:
-        """Return the amount of one entry; None for an estimate."""
+    def _read(self, name: str, value: str | Amount) -> Amount:
+        """Return the amount of one entry. Raises UserError."""
         if isinstance(value, Amount):
             return value.mapped(*self.view.map(name))
-        word = value.strip().lower()
-        if name in ("IA", "IB") and word.startswith(ESTIMATE):
-            return None
-        if name in ("TA", "TB") and word == COURSE:
+        if name in ("TA", "TB") and value == COURSE:
             return Amount.exactly(math.nan, COURSE)
-        if name in ("MU", "MUP") and word == LOCKED:
+        if name in ("MU", "MUP") and value == LOCKED:
             return Amount.exactly(PIVOT, to_text(PIVOT))
-        return read(name, value, self.view)
+        amount = read(name, value, self.view)
+        is_measured = quantity(name).unit in DIMENSIONS and amount.value
+        if self.is_inferred and is_measured and not units_in(name, value):
+            raise UserError(
+                f"{name} = {value} has no unit, and other values have; add one, or "
+                f'units = "{self.view.units}" for numbers without (--units {self.view.units})'
+            )
+        return amount
 
     def _set_estimates(self) -> None:
         """Set the yaw inertias that are to be estimated."""
         for vehicle, names in SIZES.items():
             name, present = f"I{vehicle}", [n for n in names if n in self.sizes]
-            if len(present) == 1:
-                message = f"{present[0]} is given alone; expected {names[0]} and {names[1]}"
-                raise UserError(message, self._place(present[0]))
             text = str(self.given.get(name, ESTIMATE if present else ""))
-            if not text.startswith(ESTIMATE):
-                continue
-            sizes = [self.sizes[n].value for n in present]
-            with self._naming(self._place(name)):
-                if f"M{vehicle}" not in self.entries:
-                    raise UserError(f"{name} = {text} needs M{vehicle}")
-                mass = self.entries[f"M{vehicle}"].value
-                value, rule = estimate(
-                    name, mass, (sizes[0], sizes[1]) if sizes else None, self.view
-                )
-                tolerance = normalized(text).removeprefix(ESTIMATE)
-                amount = read(name, f"{to_text(value)}{tolerance}")
-            self.entries[name] = amount
-            self.estimated.append(name)
-            shown = f"{self.view.shown(name, value):.4g} {self.view.unit(name)}".rstrip()
-            self.remarks.append(f"{name} = {shown} is estimated: {rule}")
+            with self._naming(present[0] if present else name):
+                if len(present) == 1:
+                    raise UserError(f"{present[0]} is given alone; expected {' and '.join(names)}")
+                if text.startswith(ESTIMATE):
+                    self._set_estimate(name, text, [self.sizes[n].value for n in present])
+
+    def _set_estimate(self, name: str, text: str, sizes: Sequence[float]) -> None:
+        """Set a yaw inertia that is estimated, with the tolerance in its text. Raises UserError."""
+        mass = self.entries.get(f"M{name[1]}")
+        if mass is None:
+            raise UserError(f"{name} = {text} needs M{name[1]}")
+        value, rule = estimate(name, mass.value, sizes, self.view)
+        tolerance = normalized(text).removeprefix(ESTIMATE)
+        self.entries[name] = read(name, f"{to_text(value)}{tolerance}", self.view)
+        self.estimated.append(name)
+        self.remarks.append(f"{name} = {value:g} {self.view.unit(name)} is estimated: {rule}")
 
     def _set_headings(self) -> None:
         """Set the headings of vehicles that face a course which is known."""
-        following = {
-            n for n in ("TA", "TB") if n in self.entries and self.entries[n].text == COURSE
-        }
-        known = headings(self.entries)
-        self.entries |= {name: known[name] for name in following if name in known}
+        for name, heading in headings(self.entries).items():
+            if name in self.entries and self.entries[name].text == COURSE:
+                self.entries[name] = heading
 
     def _set_plane_across(self) -> None:
         """Set GA and MU of point masses that move along one line."""
@@ -494,29 +439,22 @@ class _Reader:
 
     def _texts(self) -> tuple[dict[str, str], tuple[str, ...]]:
         """Return what is typed into the 1988 program, and the names that are typed though not
-        given."""
-        nominal = {n: Amount.exactly(a.value, a.text) for n, a in self.entries.items()}
-        nominal = {**contact_point(nominal)}
+        given. Raises UserError."""
+        nominal = contact_point({n: replace(a, kind="exact") for n, a in self.entries.items()})
         known = headings(nominal)
-        texts = {}
-        for name in SCENE:
-            amount = nominal.get(name)
-            if amount and amount.text == COURSE:
-                amount = known.get(name)
-            if amount and not (name == "MU" and self.entries["MU"].share):
-                texts[name] = amount.typed
-        if "MU" in self.entries and self.entries["MU"].share:
+        amounts = {n: known.get(n, a) if a.text == COURSE else a for n, a in nominal.items()}
+        texts = {n: a.typed for n, a in amounts.items() if not (a.share or math.isnan(a.value))}
+        if "MU" in amounts and amounts["MU"].share:
             texts |= self._friction_share(texts)
-        omitted: tuple[str, ...] = ()
-        if self.entries["M"].value == 4 and {"MA", "MB", "UX", "UY", "VX", "VY"} <= {*texts}:
-            omitted = tuple(name for name in OPTIONAL_OF_POINTS if name not in texts)
+        is_points = amounts["M"].value == 4 and {*SCENE} - {*OPTIONAL_OF_POINTS} <= {*texts}
+        omitted = [name for name in OPTIONAL_OF_POINTS if is_points and name not in texts]
         # line 480 divides by the inertias, of point masses, too
         texts |= {name: "1" if name in ("IA", "IB") else "0" for name in omitted}
-        for name, text in texts.items():
-            if len(text) > MAX_TYPED:
-                message = f"{name} has more than {MAX_TYPED} characters; expected fewer digits"
-                raise UserError(message, self._place(name))
-        return {name: texts[name] for name in SCENE if name in texts}, omitted
+        for name in SCENE:
+            if len(texts.get(name, "")) > MAX_TYPED:
+                with self._naming(name):
+                    raise UserError(f"{name} has more than {MAX_TYPED} characters")
+        return {name: texts[name] for name in SCENE if name in texts}, tuple(omitted)
 
     def _friction_share(self, texts: Mapping[str, str]) -> dict[str, str]:
         """Return the MU that is a share of the critical friction of the nominal scene."""
@@ -576,8 +514,3 @@ def _entry(name: str, value: Any) -> str | Amount:
         raise UserError(
             f"{name} is {quoted(value)}; expected a number, a text or an Amount"
         ) from None
-
-
-def load(path: str, **options: str | None) -> Case:
-    """Return the case in a TOML file, see `Case.load`."""
-    return Case.load(path, **options)

@@ -12,6 +12,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ..errors import UserError
@@ -45,9 +46,7 @@ def is_car(pounds: Any) -> Any:
     return (pounds >= MIN_WEIGHT - 1e-6) & (pounds <= MAX_WEIGHT + 1e-6)  # 1,500 lb from kg
 
 
-def estimate(
-    name: str, mass: float, sizes: tuple[float, float] | None, view: View
-) -> tuple[float, str]:
+def estimate(name: str, mass: float, sizes: Sequence[float], view: View) -> tuple[float, str]:
     """Return an estimated yaw inertia of four digits, in base units, and its rule in words.
 
     Parameters
@@ -56,8 +55,8 @@ def estimate(
         The inertia.
     mass : float
         In base units.
-    sizes : tuple of float or None
-        Length and width in base units.
+    sizes : sequence of float
+        Length and width in base units, or nothing.
     view : View
         Its units are those of the words.
 
@@ -71,7 +70,7 @@ def estimate(
         raise UserError(f"{name} = estimate needs M{vehicle} above 0")
     pounds = weight(mass, view)
     if sizes:
-        value = rectangle_inertia(mass, *sizes)
+        value = rectangle_inertia(mass, sizes[0], sizes[1])
         rule = (
             f"M{vehicle} (L{vehicle}² + B{vehicle}²)/12, a uniform rectangle; "
             "6 to 14 % high on seven passenger cars"

@@ -94,59 +94,35 @@ def line_of_motion(entries: Mapping[str, Amount]) -> tuple[float | None, bool]:
     bool
         True if what is known implies that the impulse is along the line.
     """
-    directions = {speed: _direction(entries, speed) for speed in VECTORS}
-    exact = {speed for speed, (is_exact, _) in directions.items() if is_exact}
-    pairs = [{first, second} <= exact for first, second in _COMPLETE]
-    if not (pairs[0] or pairs[1] or (any(pairs[2:]) and len(exact) > 2)):
+    vectors = {speed: _vector(entries, speed) for speed in VECTORS}
+    known = {speed: vector for speed, vector in vectors.items() if vector is not None}
+    pairs = [{first, second} <= {*known} for first, second in _COMPLETE]
+    open_names = [n for s in VECTORS if s not in known for n in VECTORS[s] if n in entries]
+    moving = [vector for vector in known.values() if vector]
+    is_known = pairs[0] or pairs[1] or (any(pairs[2:]) and len(known) > 2)
+    if not (is_known and moving) or open_names or any(name in entries for name in _ACROSS):
         return None, False
-    moving = {s: angle for s, (_, angle) in directions.items() if angle is not None}
-    known_otherwise = [n for s in VECTORS if s not in exact for n in VECTORS[s] if n in entries]
-    if not moving or known_otherwise or any(name in entries for name in _ACROSS):
+    if any(abs((moving[0].conjugate() * v).imag) > PARALLEL * abs(v * moving[0]) for v in moving):
         return None, False
-    first = next(iter(moving.values()))
-    if any(abs(math.sin(math.radians(angle - first))) > PARALLEL for angle in moving.values()):
-        return None, False
-    return _normal_of_approach(entries, moving), any(pairs[2:])
+    # A is taken to be the faster one where not both speeds before are known
+    has_speeds = all(name in entries or VECTORS[name][0] in entries for name in ("SA", "SB"))
+    approach = known.get("SA", 0j) - known.get("SB", 0j) if has_speeds else 0j
+    if not approach:
+        speed = next(name for name, vector in known.items() if vector)
+        approach = known[speed] if speed[1] == "A" else -known[speed]
+    return math.degrees(math.atan2(-approach.imag + 0.0, -approach.real + 0.0)), any(pairs[2:])
 
 
-def _direction(entries: Mapping[str, Amount], speed: str) -> tuple[bool, float | None]:
-    """Return whether a velocity's direction is known exactly, and it in degrees, None at rest."""
+def _vector(entries: Mapping[str, Amount], speed: str) -> complex | None:
+    """Return a velocity x + iy, 0 at rest, None if its direction is not known exactly; its size is
+    1 if that is not known."""
     x, y, course = VECTORS[speed]
-    size, parts = entries.get(speed), [entries[n] for n in (x, y) if n in entries]
+    size = entries.get(speed)
     if size and not size.varies and size.value == 0:
-        return True, None
-    if len(parts) == 2 and not any(part.varies for part in parts):
-        if not (parts[0].value or parts[1].value):
-            return True, None
-        return True, math.degrees(math.atan2(parts[1].value, parts[0].value))
+        return 0j
+    if x in entries and y in entries and not (entries[x].varies or entries[y].varies):
+        return complex(entries[x].value, entries[y].value)
     if course in entries and not entries[course].varies:
-        return True, entries[course].value
-    return False, None
-
-
-def _normal_of_approach(entries: Mapping[str, Amount], moving: Mapping[str, float]) -> float:
-    """Return the direction against which A approaches B, in degrees.
-
-    A is taken to be the faster one where not both speeds before are known."""
-    velocities = [_velocity(entries, speed) for speed in ("SA", "SB")]
-    if all(velocities):
-        (ux, uy), (vx, vy) = (velocity for velocity in velocities if velocity)
-        x, y = ux - vx, uy - vy
-        if not (x or y):
-            x, y = ux, uy
-        if x or y:
-            return math.degrees(math.atan2(-y + 0.0, -x + 0.0))
-    speed, angle = next(iter(moving.items()))
-    return math.remainder(angle + 180 * (speed[1] == "A"), 360)
-
-
-def _velocity(entries: Mapping[str, Amount], speed: str) -> tuple[float, float] | None:
-    """Return the components of a velocity, None if it is not known."""
-    x, y, _ = VECTORS[speed]
-    if x in entries and y in entries:
-        return entries[x].value, entries[y].value
-    size, (_, angle) = entries.get(speed), _direction(entries, speed)
-    if size is None or (size.value and angle is None):
-        return None
-    turn = math.radians(angle or 0.0)
-    return size.value * math.cos(turn), size.value * math.sin(turn)
+        turn = math.radians(entries[course].value)
+        return (size.value if size else 1.0) * complex(math.cos(turn), math.sin(turn))
+    return None

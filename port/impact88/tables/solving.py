@@ -420,8 +420,7 @@ class _Reading:
         for at, mass in enumerate(masses.tolist()):
             if mass not in estimates:
                 try:
-                    pair = (sizes[0], sizes[1]) if sizes else None
-                    estimates[mass] = estimate(name, mass, pair, self.solver.view)[0]
+                    estimates[mass] = estimate(name, mass, sizes, self.solver.view)[0]
                 except UserError as error:
                     estimates[mass] = str(error).removeprefix(f"{name} ")
             value = estimates[mass]
