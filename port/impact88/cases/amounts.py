@@ -181,12 +181,14 @@ def _image(
             return x * (1 if factor > 0 else -1)
         return float(offset + factor * Fraction(x))
 
-    low, high = ends if factor > 0 else ends[::-1]
     nominal, text = image(value), ""
     if offset == 0 and abs(factor) == 1 and like.text:
         text = negated(like.text) if factor < 0 and nominal else like.text
+    if like.kind == "exact":
+        return Amount(nominal, nominal, nominal, text=text, share=like.share)
+    low, high = map(image, ends if factor > 0 else ends[::-1])
     spread = float(abs(factor) * Fraction(sd))
-    return Amount(nominal, image(low), image(high), like.kind, spread, text, like.share)
+    return Amount(nominal, low, high, like.kind, spread, text, like.share)
 
 
 # -- the notation

@@ -256,22 +256,24 @@ class Case:
 
     def toml(self) -> str:
         """Return the case as a commented scene file, entries as written."""
-        texts = {n: self._written_text(n, v) for n, v in self.written.items()}
+        texts = {name: _written_text(value) for name, value in self.written.items()}
         names = [n for n in SCENE if n in texts]
         return write_toml({**self.view.words(), **texts}, names, view=self.view)
 
-    def _written_text(self, name: str, value: str | Amount) -> str:
-        """Return an entry as text; an amount in its notation."""
-        if isinstance(value, str):
-            return value
-        numbers = [to_text(x) for x in (value.low, value.value, value.high)]
-        low, middle, high = numbers
-        return {
-            "exact": middle,
-            "uniform": f"{low} .. {high}",
-            "triangular": f"triangular {low} {middle} {high}",
-            "normal": f"normal {middle} {to_text(value.sd)}",
-        }[value.kind]
+
+def _written_text(value: str | Amount) -> str:
+    """Return an entry as text; an amount in the notation of a file."""
+    if isinstance(value, str):
+        return value
+    numbers = (value.low, value.value, value.high, value.sd)
+    low, middle, high, sd = (to_text(100 * x if value.share else x) for x in numbers)
+    texts = {
+        "exact": middle,
+        "uniform": f"{low} .. {high}",
+        "triangular": f"triangular {low} {middle} {high}",
+        "normal": f"normal {middle} {sd}",
+    }
+    return texts[value.kind] + " %" * value.share
 
 
 class _Reader:
@@ -304,9 +306,9 @@ class _Reader:
     def case(self) -> Case:
         """Return the case."""
         self._check_names()
-        words = {n: self.about.get(n) for n in ("units", "axes", "headings")}
+        words = {n: self.about[n] for n in ("units", "axes", "headings") if n in self.about}
         named = View.of(self.source, **words)
-        self.view = View(*(getattr(named, n) or getattr(self.defaults, n) for n in words))
+        self.view = replace(self.defaults, **{name: getattr(named, name) for name in words})
         if not self.view.units:
             self._infer_units()
         self._read_entries()

@@ -4,6 +4,7 @@ The digits of a value stay as they are in the file; TOML's binary numbers are ne
 
 from __future__ import annotations
 
+import datetime
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -72,6 +73,8 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
             if "source" in value:
                 texts[name + SOURCE] = str(value["source"])
             value = value["value"]
+        if name in ABOUT and isinstance(value, datetime.date):
+            value = str(value)
         if isinstance(value, bool) or not isinstance(value, str | int):
             kinds = {bool: "a truth value", list: "a list", dict: "a table"}
             kind = kinds.get(type(value), "a date")
