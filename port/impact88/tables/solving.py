@@ -214,13 +214,18 @@ class Solver:
             if not (results_only and heading_name(heading)[0] in SCENE)
         ]
         self.constants = {n: x for n, x in self.case.numbers.items() if n not in self.columns}
+        self.share = self.case.entries.get("MU") if "MU" not in self.columns else None
+        self.share = self.share if self.share and self.share.share else None
+        followed = {n for n in ("TA", "TB") if self.case.written.get(n) == COURSE}
+        self.computed = {*self.case.estimated, *followed} - {*self.columns}
+        self.computed |= {"MU"} if self.share else set()
         self._remarks: dict[str, list[Any]] = {}
         self._leave_out_results()
 
     def _leave_out_results(self) -> None:
         """Leave out results of point masses whose inputs are missing, and fill those that no other
         result uses. Raises UserError where the table lacks another column."""
-        present = {*self.columns, *self.constants, *self._computed(), "M"}
+        present = {*self.columns, *self.constants, *self.computed, "M"}
         may_be_points = "M" in self.columns or self.constants.get("M") == 4
         lacking = [n for n in SCENE if n not in present]
         if absent := [n for n in lacking if not (may_be_points and n in OPTIONAL_OF_POINTS)]:
@@ -235,16 +240,6 @@ class Solver:
         if not self.results:
             raise UserError("; ".join(self.remarks()), self.table.where)
 
-    def _computed(self) -> list[str]:
-        """Return the scene's names that are computed for each row."""
-        names = [n for n in self.case.estimated if n not in self.columns]
-        names += [n for n in ("TA", "TB") if self._follows_course(n)]
-        share = self.case.entries.get("MU")
-        return names + (["MU"] if share and share.share and "MU" not in self.columns else [])
-
-    def _follows_course(self, name: str) -> bool:
-        return name not in self.columns and self.case.written.get(name) == COURSE
-
     def remarks(self) -> list[str]:
         """Return the remarks on all rows so far."""
         lines = [f"{name} needs {' '.join(names)}" for name, names in self.left_out.items()]
@@ -256,32 +251,28 @@ class Solver:
     def solve(self, block: Block) -> tuple[dict[str, Column], list[BadRow], int]:
         """Return a block with its results, its bad rows, and how many rows ended with an error."""
         reading = _Reading(self, block)
-        columns = reading.columns
-        self._remark(columns, block)
+        self._remark(reading.columns, block)
         if self.is_applesoft:
             results = self._applesoft(reading)
+            is_error = (results["ERROR"] != "") & (results["ERROR"] != ZERO_DETERMINANT)
         else:
-            results = dict(solve(columns, self.results))
-            count = len(block.rows)
-            results = {n: np.array(np.broadcast_to(x, count)) for n, x in results.items()}
+            solution = solve(reading.columns, self.results)
+            results = {n: np.array(np.broadcast_to(x, reading.count)) for n, x in solution.items()}
             reading.refuse(results)
+            is_error = np.zeros(reading.count, np.bool_)
         bad = sorted(reading.bad)
+        empty = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
         for name, values in results.items():
-            empty = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}.get(name, math.nan)
-            values[bad] = empty
-        ended = 0
-        if self.is_applesoft:
-            error = results["ERROR"]
-            ended = int(np.count_nonzero((error != "") & (error != ZERO_DETERMINANT)))
-        shown = {
-            self.view.heading(n) if n in RESULTS else n: self.view.shown(n, x)
-            if n in RESULTS
-            else x
-            for n, x in results.items()
-        }
-        kept = {heading: reading.kept(heading) for heading in self.kept}
+            values[bad] = empty.get(name, math.nan)
+        columns = {heading: reading.kept(heading) for heading in self.kept}
+        for name, values in results.items():
+            is_result = name in RESULTS
+            columns[self.view.heading(name) if is_result else name] = (
+                self.view.shown(name, values) if is_result else values
+            )
+        is_error[bad] = False
         complaints = [BadRow(block.rows[at], *reading.bad[at]) for at in bad]
-        return {**kept, **shown}, complaints, ended
+        return columns, complaints, int(np.count_nonzero(is_error))
 
     def _applesoft(self, reading: _Reading) -> dict[str, NDArray[Any]]:
         """Return the results of the 1988 arithmetic."""
@@ -302,15 +293,12 @@ class Solver:
     @np.errstate(all="ignore")
     def _remark(self, columns: Mapping[str, Floats], block: Block) -> None:
         """Count the rows that each plausibility remark applies to."""
-        courses = {
-            v: np.degrees(np.arctan2(columns[y], columns[x]))
-            for v, x, y in (("A", "UX", "UY"), ("B", "VX", "VY"))
-            if x in columns and y in columns
-        }
-        for v, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
-            if v in courses:
+        courses = {}
+        for vehicle, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
+            if x in columns and y in columns:
+                course = np.degrees(np.arctan2(columns[y], columns[x]))
                 is_at_rest = (columns[x] == 0) & (columns[y] == 0)
-                courses[v] = np.where(is_at_rest, np.nan, courses[v])
+                courses[vehicle] = np.where(is_at_rest, np.nan, course)
         sizes = {name: amount.value for name, amount in self.case.sizes.items()}
         for name, where, words, amount in implausible(columns, self.view, courses, sizes):
             if name not in self.columns and name not in ("TA", "TB"):
@@ -392,18 +380,17 @@ class _Reading:
         """Add the columns that are computed for each row."""
         solver, columns = self.solver, self.columns
         for name in solver.case.estimated:
-            if name not in solver.columns and f"M{name[1]}" in solver.columns:
+            if name in solver.computed and f"M{name[1]}" in solver.columns:
                 columns[name] = self._estimates(name, columns[f"M{name[1]}"])
         for name, x, y in (("TA", "UX", "UY"), ("TB", "VX", "VY")):
-            if solver._follows_course(name) and x in columns and y in columns:
+            if name in solver.computed and x in columns and y in columns:
                 turn = 180.0 if name == "TA" else 0.0
                 columns[name] = np.degrees(np.arctan2(columns[y], columns[x])) + turn
         if "M" in solver.columns or solver.constants.get("M") == 4:
             blank = np.where(self.points, 0.0, np.nan)
             columns |= {name: blank for name in UNUSED_BY_POINTS if name not in columns}
-        share = solver.case.entries.get("MU")
-        if share and share.share and "MU" not in solver.columns:
-            self.shares[:] = share.value
+        if solver.share:
+            self.shares[:] = solver.share.value
         where = np.flatnonzero(~np.isnan(self.shares))
         if where.size:
             scene = {n: np.broadcast_to(x, self.count)[where] for n, x in columns.items()}
@@ -447,29 +434,22 @@ class _Reading:
     def texts(self, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
         solver, default = self.solver, "1" if name in ("IA", "IB") else "0"
+        values = self.columns.get(name, np.full(self.count, math.nan))
         if name not in solver.columns:
-            values = self.columns.get(name)
-            if values is None:
-                return [default] * self.count
-            if name in solver.case.texts and name not in solver._computed():
+            if name in solver.case.texts and name not in solver.computed:
                 return [solver.case.texts[name]] * self.count
             return [default if math.isnan(x) else to_text(x) for x in values.tolist()]
         factor, offset = solver.view.map(name, solver.columns[name][1])
         is_typed = factor == 1 and not offset
-        column = self.block.columns[solver.columns[name][0]]
-        cells = column.tolist() if isinstance(column, np.ndarray) else list(column)
-        amounts, texts = self.amounts[name], []
-        for at, cell in enumerate(cells):
-            if at in amounts:
-                text = (
-                    to_text(float(self.columns[name][at]))
-                    if amounts[at].share
-                    else amounts[at].typed
-                )
-            elif at in self.bad or cell is None or cell == "":
+        texts = []
+        for at, cell in enumerate(self.block.columns[solver.columns[name][0]]):
+            amount = self.amounts[name].get(at)
+            if amount:
+                text = to_text(float(values[at])) if amount.share else amount.typed
+            elif math.isnan(values[at]):  # a bad cell, or one that point masses do not look at
                 text = default
             else:
-                text = to_text(cell) if isinstance(cell, float) else str(cell).strip().upper()
+                text = cell.strip().upper() if isinstance(cell, str) else to_text(float(cell))
                 text = _with_point(text) if solver.table.decimal_comma else text
                 text = text if is_typed else to_text(float(offset + factor * exact(text)))
             if len(text) > MAX_TYPED or text == "INF":
@@ -481,10 +461,12 @@ class _Reading:
     def kept(self, heading: str) -> Column:
         """Return a column of the table for the output."""
         solver, name = self.solver, heading_name(heading)[0]
-        column = self.block.columns.get(heading, [None] * self.count)
-        if name in solver.replaced:
-            text = solver.view.shown_text(name, solver.constants.get(name, math.nan))
+        if name in solver.replaced and name in solver.case.texts:
+            text = solver.view.shown_text(name, to_double(solver.case.texts[name]))
             return [text] * self.count if solver.as_text else np.full(self.count, float(text))
+        if name in solver.replaced:
+            return solver.view.shown(name, self.columns[name])
+        column = self.block.columns.get(heading, [None] * self.count)
         if solver.as_text or name not in solver.columns:
             return column
         shown = plain_numbers(column, solver.table.decimal_comma).copy()
