@@ -276,7 +276,7 @@ class Solver:
 
     def _applesoft(self, reading: _Reading) -> dict[str, NDArray[Any]]:
         """Return the results of the 1988 arithmetic."""
-        from .. import replay
+        from ..program.replay import replay
 
         texts = {name: reading.texts(name) for name in SCENE}
         for at in reading.bad:

@@ -1,0 +1,58 @@
+"""Damaged and hostile files end in a result or in one line, soon."""
+
+import random
+import time
+from pathlib import Path
+
+import pytest
+
+import impact88
+from impact88.cases import Case
+from impact88.errors import UserError
+from impact88.tables.solving import solve_table
+
+PIECES = [b'"', b"'", b",", b";", b"\n", b"\r", b"\0", b"\xff", b"[" * 90, b"{", b"=", b"9" * 400]
+PIECES += [b"1e999999999", b"1e-999999999", b"nan", b"inf", b"..", b"+-", b"\xff\xfe", b"," * 2000]
+SCENE = 'units = "us"\nMA = {value = "2,000 lb", source = "x"}\nIA = "estimate"\nDA = "6 ft 6 in"\n'
+
+
+def damaged(data: bytes, rng: random.Random) -> bytes:
+    for _ in range(rng.choice((1, 2, 5))):
+        at, to = sorted(rng.randrange(len(data) + 1) for _ in range(2))
+        change = rng.randrange(4)
+        if change == 0:
+            data = data[:at] + rng.choice(PIECES) + data[at:]
+        elif change == 1:
+            data = data[:at] + data[at + rng.randrange(40) :]
+        elif change == 2:
+            data = data[:to] + data[at:to] + data[to:]
+        else:
+            data = data[:at] + bytes([rng.randrange(256)]) + data[at + 1 :]
+    return data
+
+
+@pytest.mark.parametrize("kind", ["toml", "csv", "jsonl", "xlsx", "parquet"])
+def test_damaged_files(tmp_path: Path, kind: str) -> None:
+    rng, path = random.Random(kind), tmp_path / f"file.{kind}"
+    target = str(tmp_path / "out.csv")
+    if kind == "toml":
+        path.write_text(SCENE)
+    else:
+        scene = dict(impact88.sample(1))
+        table = tmp_path / "scene.csv"
+        table.write_text("\n".join([",".join(scene), *[",".join(scene.values())] * 9]))
+        solve_table(str(table), str(path), ["VAX"])
+    data = path.read_bytes()
+    for _ in range(10):
+        path.write_bytes(damaged(data, rng))
+        start, message = time.process_time(), path.name
+        try:
+            if kind == "toml":
+                Case.load(str(path))
+            else:
+                solve_table(str(path), target, arithmetic=rng.choice(("float64", "applesoft")))
+        except UserError as error:
+            message = str(error)
+        assert path.name in message
+        assert "\n" not in message
+        assert time.process_time() - start < 2
