@@ -28,6 +28,7 @@ Column = Any
 
 CHUNK_BYTES = 8_000_000  # of CSV read at a time: some 60,000 rows, more gain nothing
 BLOCK_ROWS = 20_000  # of other formats
+MAX_BLANK_LINES = 1_000  # in a row; more are no JSON Lines, and take long to skip
 MAX_COLUMNS = 10_000  # beyond it a file is no table of scenes, and splitting it takes long
 
 
@@ -254,7 +255,7 @@ def _json_records(
     file: IO[bytes], where: str, numeral: type[Numeral] | None
 ) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the objects of a file, with their lines."""
-    number = 0
+    number = blank = 0
     while line := file.readline(LONGEST_LINE):
         number += 1
         place = f"{where}, line {number}"
@@ -266,7 +267,10 @@ def _json_records(
         if len(line) == LONGEST_LINE:
             raise UserError(f"is longer than {LONGEST_LINE:,} bytes; expected one row", place)
         if line.strip():
+            blank = 0
             yield number, _record(_json(line, place, numeral), place)
+        elif (blank := blank + 1) > MAX_BLANK_LINES:
+            raise UserError(f"{MAX_BLANK_LINES:,} blank lines; expected an object a line", place)
 
 
 def _json(data: bytes, place: str, numeral: type[Numeral] | None) -> Any:
