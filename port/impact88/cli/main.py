@@ -12,15 +12,15 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
-from contextlib import redirect_stdout, suppress
+from contextlib import suppress
 from importlib import import_module
 
 from ..errors import UserError, note, one_line
-from ..files import ESCAPED, replacing
+from ..files import ESCAPED
 from ..names import did_you_mean
 from ..version import __version__
 from . import COMMANDS, GONE
-from .options import check_files
+from .options import check_files, printing_to
 
 UNUSABLE = 2
 INTERNAL = 3
@@ -149,18 +149,14 @@ def _run(name: str, words: Sequence[str]) -> int:
     except SystemExit:  # the help is printed
         return 0
     check_files(args)
-    output = getattr(args, "output", None)
-    if output in (None, "-"):
-        return int(module.main(args) or 0)
-    status = 0
-    with suppress(_NothingWritten), replacing(output) as file, redirect_stdout(file):
+    with suppress(NothingWritten), printing_to(getattr(args, "output", None) or "-"):
         status = int(module.main(args) or 0)
         if status == UNUSABLE:
-            raise _NothingWritten
+            raise NothingWritten
     return status
 
 
-class _NothingWritten(Exception):
+class NothingWritten(Exception):
     """The input was unusable: the output file stays as it is."""
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stdout
 
 from ..errors import UserError
-from ..files import check_apart
+from ..files import check_apart, replacing
 from ..names import check_names
 
 TYPE_CHECKING = False
@@ -88,6 +89,29 @@ def add_output(parser: Parser) -> None:
     )
 
 
+def add_target(parser: Parser) -> None:
+    """Add ``-o`` for a file that the command writes itself."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        dest="target",
+        type=OutputPath,
+        default=OutputPath("-"),
+        metavar="FILE",
+        help="write here (default: stdout)",
+    )
+
+
+@contextmanager
+def printing_to(path: str) -> Iterator[None]:
+    """Context in which what is printed goes to a file, whole or not at all; ``-`` is stdout."""
+    if path == "-":
+        yield
+        return
+    with replacing(path) as file, redirect_stdout(file):
+        yield
+
+
 def add_names(parser: Parser, option: str, meaning: str) -> None:
     """Add an option that takes names, see `names_of`."""
     parser.add_argument(
@@ -124,20 +148,25 @@ def names_of(texts: Sequence[str], allowed: Collection[str], option: str) -> tup
     return tuple(dict.fromkeys(words))
 
 
-def changes_of(args: Args) -> dict[str, str]:
-    """Return name -> text of ``--set``. Raises UserError for a text without ``=``, and for a name
-    given twice."""
-    changes: dict[str, str] = {}
-    for text in args.set:
+def pairs_of(texts: Sequence[str], option: str, expected: str) -> dict[str, str]:
+    """Return name -> text of an option that takes NAME=TEXT. Raises UserError for a text without
+    ``=``, and for a name given twice."""
+    pairs: dict[str, str] = {}
+    for text in texts:
         name, equals, value = text.partition("=")
         name = name.strip()
         name = name.lower() if name.lower() in _LOWER else name.upper()
         if not equals or not name:
-            raise UserError(f"--set {text}: expected NAME=VALUE, such as --set MU=.5")
-        if name in changes:
-            raise UserError(f"--set: {name} is given twice")
-        changes[name] = value.strip()
-    return changes
+            raise UserError(f"{option} {text}: expected {expected}")
+        if name in pairs:
+            raise UserError(f"{option}: {name} is given twice")
+        pairs[name] = value.strip()
+    return pairs
+
+
+def changes_of(args: Args) -> dict[str, str]:
+    """Return name -> text of ``--set``."""
+    return pairs_of(args.set, "--set", "NAME=VALUE, such as --set MU=.5")
 
 
 _LOWER = ("title", "case", "examiner", "date", "correlations")

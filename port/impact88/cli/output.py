@@ -83,39 +83,35 @@ def table(rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)) -> list[str
 
 
 class Progress:
-    """Progress of a number of steps: on a terminal one line of stderr, elsewhere nothing."""
+    """Progress on a terminal: one line of stderr that is overwritten; elsewhere nothing."""
 
-    def __init__(self, total: int | None, what: str) -> None:
-        self.total, self.what, self.done = total, what, 0
-        self._shown, self._last = sys.stderr.isatty(), time.monotonic()
-        self._width = 0
+    def __init__(self, what: str) -> None:
+        self.what, self._last, self._width = what, time.monotonic(), 0
+        self._is_shown = sys.stderr.isatty()
 
-    def update(self, steps: int = 1) -> None:
-        """Add finished steps, and show the progress if it is time."""
-        self.done += steps
+    def update(self, done: int, fraction: float | None = None) -> None:
+        """Show the number of steps done, or the fraction, if it is time."""
         now = time.monotonic()
-        if not self._shown or now - self._last < PROGRESS_INTERVAL:
+        if not self._is_shown or now - self._last < PROGRESS_INTERVAL:
             return
         self._last = now
-        share = f"{100 * self.done // self.total} %" if self.total else f"{self.done:,}"
-        text = f"{self.what}: {share}"
-        print(f"\r{text:<{self._width}}", end="", file=sys.stderr, flush=True)
-        self._width = len(text)
+        self.show(f"{self.what}: {done:,}" if fraction is None else f"{self.what}: {fraction:.0%}")
 
-    def clear(self) -> None:
-        """Clear the line."""
-        if self._width:
-            print(f"\r{'':<{self._width}}\r", end="", file=sys.stderr, flush=True)
+    def show(self, text: str) -> None:
+        """Overwrite the line."""
+        print(f"\r{text:<{self._width}}", end="\r" if not text else "", file=sys.stderr, flush=True)
+        self._width = len(text)
 
 
 @contextmanager
-def progress(total: int | None, what: str) -> Iterator[Progress]:
-    """Context of a progress meter for ``total`` steps (None: unknown)."""
-    meter = Progress(total, what)
+def progress(what: str) -> Iterator[Progress]:
+    """Context of a progress meter."""
+    meter = Progress(what)
     try:
         yield meter
     finally:
-        meter.clear()
+        if meter._width:
+            meter.show("")
 
 
 def say(command: str, remarks: Iterable[str]) -> None:

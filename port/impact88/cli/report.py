@@ -12,46 +12,24 @@ exit status: 0 written; 1 written, but no impact that physics allows agrees; 2 b
 
 from __future__ import annotations
 
-import os
-
 from ..errors import UserError
-from ..files import replacing
 from . import options
-
-ENDINGS = (".html", ".svg", ".png")
 
 
 def declare(parser: options.Parser) -> None:
     """Add the arguments."""
     options.add_case(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        dest="target",
-        type=options.OutputPath,
-        required=True,
-        metavar="FILE",
-        help="the file to write: .html, .svg or .png",
-    )
+    options.add_target(parser)
     options.add_seed(parser)
 
 
 def main(args: options.Args) -> int:
     """Write a page or a drawing."""
-    ending = os.path.splitext(args.target)[1].lower()
-    if ending not in ENDINGS:
-        raise UserError(f"ends in {ending!r}; expected one of {' '.join(ENDINGS)}", args.target)
-    from ..report import casepage, drawing
     from ..report.answers import ask
+    from ..report.casepage import ENDINGS, write
 
-    case = options.case_of(args)
-    answer = ask(case, full=True, seed=args.seed)
-    if ending == ".html":
-        data = casepage.page(answer).encode()
-    elif ending == ".svg":
-        data = drawing.draw(answer, titled=True).encode()
-    else:
-        data = drawing.to_png(drawing.draw(answer, titled=True))
-    with replacing(args.target, "wb") as file:
-        file.write(data)
+    if not args.target.lower().endswith(ENDINGS):
+        raise UserError(f"expected a name that ends in {', '.join(ENDINGS)}", f"-o {args.target}")
+    answer = ask(options.case_of(args), full=True, seed=args.seed)
+    write(answer, args.target)
     return int(not answer.possible)
