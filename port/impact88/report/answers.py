@@ -36,6 +36,10 @@ ALL = tuple(
     )
 )
 """Every result."""
+UNUSABLE = (
+    "no impact has these values; expected M = 6 or 4, masses and inertias above 0, and at most one "
+    "barrier (MB = inf, IB = inf), at rest"
+)
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
 MAX_DRIVERS = 3  # values named as those that make a result uncertain
@@ -247,11 +251,11 @@ def is_forward(case: Case) -> bool:
 
 def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     """Return the answer to a complete scene, with intervals where it has tolerances."""
-    values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS"))
+    values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS", "fit"))
     numbers = {name: float(value) for name, value in values.items()}
+    if numbers.pop("fit", 1.0) == 0:
+        raise UserError(UNUSABLE, case.source)
     bits = int(numbers.pop("STATUS", 0.0))
-    if bits & status.Status.NOT_FINITE:
-        raise UserError(f"has no answer: {status.WORDS[status.Status.NOT_FINITE]}", case.source)
     warnings = status.sentences(bits)
     remarks = [*case.remarks, *_lacking_remarks(lacking)]
     undefined = [name for name in names if math.isnan(numbers.get(name, 0.0))]
@@ -328,7 +332,7 @@ def _lacking_remarks(lacking: Mapping[str, tuple[str, ...]]) -> list[str]:
     """Return a sentence for the results that need an input that is not given."""
     by_inputs: dict[tuple[str, ...], list[str]] = {}
     for name, inputs in lacking.items():
-        if name != "STATUS":
+        if name not in ("STATUS", "fit"):
             by_inputs.setdefault(inputs, []).append(name)
     return [f"{' '.join(names)} left out: {missing(inputs)}" for inputs, names in by_inputs.items()]
 
