@@ -40,18 +40,26 @@ def answer_lines(answer: Answer) -> Iterator[str]:
 def _found_lines(answer: Answer) -> list[str]:
     """Return the table of results."""
     numbers = list(answer.found.values())
-    head = ["", "value", "90 % interval", "unit", "", "depends on"]
+    head = ["", "value", "90 % interval", "unit", ""]
     if not any(number.interval for number in numbers):
         head[2] = ""
-    if not any(number.drivers for number in numbers):
-        head[5] = ""
-    return table([head, *map(_cells, numbers)], left=(0, 3, 4, 5))
+    lines = table([head, *map(_cells, numbers)], left=(0, 3, 4))
+    names: dict[str, list[str]] = {}
+    for number in numbers:
+        names.setdefault(number.drivers, []).append(number.name)
+    names.pop("", None)
+    depends = [
+        line
+        for drivers, members in names.items()
+        for line in paragraph(f"{' '.join(members)}: {drivers}", "DEPENDS", LABEL)
+    ]
+    return [*lines, "", *depends] if depends else lines
 
 
 def _cells(number: Number) -> list[str]:
     """Return the row of one number."""
     meaning = f"{number.meaning} ({number.note})" if number.note else number.meaning
-    return [number.name, number.text, number.interval, number.unit, meaning, number.drivers]
+    return [number.name, number.text, number.interval, number.unit, meaning]
 
 
 def _check_lines(answer: Answer) -> list[str]:

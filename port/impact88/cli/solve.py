@@ -127,5 +127,6 @@ def _solve_table(args: options.Args) -> int:
             errors=args.errors or "",
             progress=meter.update,
         )
-    say("solve", [*case.remarks, *solved.remarks, *solved.messages(display_name(args.file or ""))])
+    remarks = dict.fromkeys([*case.remarks, *solved.remarks])
+    say("solve", [*remarks, *solved.messages(display_name(args.file or ""))])
     return int(bool(solved.bad or solved.ended))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from .. import status
@@ -15,10 +15,21 @@ from ..cases.amounts import Amount
 from ..cases.case import Case
 from ..errors import UserError
 from ..mechanics.solve import evaluate
-from ..names import ANGLE, FINAL_VELOCITIES, PERCENT, PIVOT, RESULTS, SCENE, missing, quantity
-from .rounding import decimals_of, decimals_with, own_decimals, rounded
+from ..names import (
+    ANGLE,
+    FINAL_VELOCITIES,
+    PERCENT,
+    PIVOT,
+    RESULTS,
+    SCENE,
+    check_names,
+    missing,
+    quantity,
+)
+from .rounding import OF_INTERVAL, decimals_of, decimals_with, own_decimals, rounded
 
 if TYPE_CHECKING:
+    from ..reconstruction.answer import Reconstruction
     from ..reconstruction.bounds import Bounds
 
 SPEEDS = ("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF")
@@ -237,7 +248,8 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
     if is_forward(case):
         names = tuple(wanted) or (ALL if full else FORWARD)
         return _forward(case, names, seed)
-    names = tuple(wanted) or (ALL if full else BACKWARD)
+    exact = {name for name, amount in case.entries.items() if not amount.varies}
+    names = tuple(wanted) or (ALL if full else tuple(n for n in BACKWARD if n not in exact))
     return _reconstructed(case, names, seed)
 
 
@@ -427,5 +439,61 @@ def clock(degrees: float) -> str:
 
 
 def _reconstructed(case: Case, names: tuple[str, ...], seed: int) -> Answer:
-    """Return the impact that agrees best with what is known, and the others."""
-    raise NotImplementedError
+    """Return the impact that agrees best with what is known; others are its alternatives."""
+    from ..reconstruction.answer import KNOWABLE, reconstruct
+
+    known = {name: amount for name, amount in case.entries.items() if name != "TF"}
+    check_names(known, KNOWABLE, "value that a reconstruction can use", case.source)
+    duration = case.entries["TF"].value if "TF" in case.entries else None
+    try:
+        impacts = reconstruct(known, samples=DRAWS, seed=seed, contact_time=duration)
+    except UserError as error:
+        raise UserError(str(error), case.source) from None
+    first, *others = [_impact(case, impact, names) for impact in impacts]
+    return replace(first, alternatives=tuple(others))
+
+
+def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
+    """Return one impact as an answer."""
+    from ..reconstruction import words
+
+    results = [n for n in names if n in impact.values or n in impact.intervals]
+    values = {name: impact.values.get(name, math.nan) for name in results}
+    drivers = {
+        name: _shares(shares)
+        for name in results
+        if (shares := impact.drivers.get(name, {})) and [*shares] != [name]
+    }
+    intervals = {n: ends for n, ends in impact.intervals.items() if n in values}
+    refusal = words.refusal(impact, case.view)
+    return Answer(
+        "reconstruct",
+        words.question(impact),
+        given_of(case),
+        numbers_of(case, values, intervals, drivers),
+        case,
+        evidence=words.evidence(impact, case.view),
+        possible=not impact.is_adverse,
+        assumed=words.assumptions(impact),
+        advice=words.advice(impact),
+        checks=_checks(case, impact),
+        remarks=(*case.remarks, *words.remarks(impact)),
+        warnings=(refusal,) if refusal else (),
+        scene={**case.numbers, **impact.values},
+    )
+
+
+def _checks(case: Case, impact: Reconstruction) -> tuple[Check, ...]:
+    """Return the values known with tolerances beside the others."""
+    checks = []
+    for name, test in impact.tests.items():
+        shown = [
+            float(case.view.shown(name, x)) for x in (test.measured, test.adjusted, test.by_others)
+        ]
+        deviation = abs(float(case.view.map(name)[0])) ** -1 * test.sd
+        decimals = decimals_of([deviation], OF_INTERVAL)
+        texts = [rounded(x, decimals) for x in shown]
+        is_odd = name in impact.evidence.at_odds
+        residual = rounded(test.residual, 1)
+        checks.append(Check(name, unit_of(case, name), *texts, residual, is_odd))
+    return tuple(checks)
