@@ -20,7 +20,7 @@ from itertools import chain, repeat
 from ..apple.applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ..errors import UserError, note
 from ..files import replacing, typed_line
-from ..names import VELOCITIES
+from ..names import SCENE, VELOCITIES
 from ..program.run import Run, page, start
 from ..program.scene import Scene, published_data, sample
 from . import options
@@ -118,6 +118,12 @@ def _data(args: options.Args) -> tuple[Mapping[str, str], str]:
     else:
         case = options.changed(options.published_case(published_data(), "the listing", args), args)
     say("run", case.remarks)
+    if args.file and not {*SCENE} <= {*case.texts}:
+        from ..report.answers import ask, scene_case
+
+        absent = [name for name in SCENE if name not in case.texts]
+        case = scene_case(ask(case))
+        note("run", f"as impact88 solve finds them: {' '.join(absent)}")
     if case.omitted:
         typed = [n if case.texts[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
         note("run", f"0 is typed for what is not given: {' '.join(typed)}")

@@ -34,6 +34,12 @@ def declare(parser: options.Parser) -> None:
     options.add_names(parser, "--outputs", "the results wanted")
     parser.add_argument("--full", action="store_true", help="every result of FILE.toml")
     options.add_json(parser)
+    parser.add_argument(
+        "--write-scene",
+        type=options.OutputPath,
+        metavar="FILE",
+        help="write the impact found as a complete FILE.toml",
+    )
     options.add_seed(parser)
     options.add_target(parser)
     table = parser.add_argument_group("tables")
@@ -71,7 +77,7 @@ def main(args: options.Args) -> int:
         return _solve_table(args)
     if args.sweep or args.arithmetic or (args.file and args.target.lower().endswith(TABLES)):
         return _solve_table(args)
-    from ..report.answers import ALL, ask
+    from ..report.answers import ALL, ask, scene_case
 
     case = options.case_of(args)
     names = options.names_of(args.outputs, ALL, "--outputs")
@@ -81,6 +87,9 @@ def main(args: options.Args) -> int:
             print_json("answer", answer.as_json())
         else:
             print("\n".join(answer_lines(answer)))
+    if args.write_scene:
+        with options.printing_to(args.write_scene):
+            print(scene_case(answer).toml(), end="")
     return int(not answer.possible)
 
 

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from .. import status
 from ..cases.amounts import Amount
 from ..cases.case import Case
+from ..cases.scenefile import INPUTS, SOURCE
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import (
@@ -466,6 +468,9 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
     }
     intervals = {n: ends for n, ends in impact.intervals.items() if n in values}
     refusal = words.refusal(impact, case.view)
+    scene = {**case.numbers, **impact.values}
+    with suppress(UserError):  # an impact that leaves inputs open has no scene
+        scene |= impact.scene()
     return Answer(
         "reconstruct",
         words.question(impact),
@@ -479,7 +484,7 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         checks=_checks(case, impact),
         remarks=(*case.remarks, *words.remarks(impact)),
         warnings=(refusal,) if refusal else (),
-        scene={**case.numbers, **impact.values},
+        scene=scene,
     )
 
 
@@ -497,3 +502,23 @@ def _checks(case: Case, impact: Reconstruction) -> tuple[Check, ...]:
         residual = rounded(test.residual, 1)
         checks.append(Check(name, unit_of(case, name), *texts, residual, is_odd))
     return tuple(checks)
+
+
+def scene_case(answer: Answer) -> Case:
+    """Return the impact of an answer as a complete scene; exact entries stay as written.
+
+    Raises
+    ------
+    UserError
+        If the answer leaves an input open."""
+    case, scene = answer.case, answer.scene
+    if absent := [name for name in SCENE if name not in scene]:
+        raise UserError(f"the impact found leaves inputs open: {missing(absent)}", case.source)
+    ranges = case.ranges
+    kept = {
+        name: value
+        for name, value in case.written.items()
+        if name.removesuffix(SOURCE) not in INPUTS or (name in SCENE and name not in ranges)
+    }
+    texts = {name: case.view.shown_text(name, scene[name]) for name in SCENE if name not in kept}
+    return Case.of({**kept, **texts}, case.source, case.view)
