@@ -27,7 +27,7 @@ from . import options
 from .output import print_json, say
 
 MAX_REPLIES = 10_000  # the program asks twice, and again for each reply it refuses
-ARITHMETICS = {"applesoft": "applesoft", "float64": "double"}
+ARITHMETICS = ("applesoft", "float64")
 
 
 def declare(parser: options.Parser) -> None:
@@ -35,7 +35,7 @@ def declare(parser: options.Parser) -> None:
     options.add_case(parser)
     parser.add_argument(
         "--arithmetic",
-        choices=tuple(ARITHMETICS),
+        choices=ARITHMETICS,
         default="applesoft",
         help="the numbers to compute with (default: %(default)s)",
     )
@@ -149,7 +149,7 @@ def _run_port(args: options.Args, data: Mapping[str, str], typed: Sequence[str] 
         echo = typed is not None or args.json or not sys.stdin.isatty()
         console = Console(replies.__next__, show, printer, dos=not args.no_dos, echo=echo)
         try:
-            record = start(data, console, ARITHMETICS[args.arithmetic], str(args.slot))
+            record = start(data, console, args.arithmetic, str(args.slot))
         except EndOfInput:
             if not args.json:
                 print(flush=True)

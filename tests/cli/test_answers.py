@@ -1,0 +1,132 @@
+"""The record of an answer, and the same digits of its numbers everywhere."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from cases import CRASH, FILES, IMPOSSIBLE, INTERSECTION, REAR_END, RECORDER
+from commands import command
+
+import impact88
+from impact88.cases.case import Case
+from impact88.report.answers import ALL, ask, scene_case
+from impact88.report.rounding import decimals_with, rounded
+
+
+def test_a_complete_scene_is_solved_forward() -> None:
+    answer = ask(Case.loads(CRASH).with_(UX="-25", VY="40", E=".2"))
+    assert answer.asked == "forward"
+    assert answer.intervals == {}
+    solved = impact88.solve(answer.case.numbers, ["DVA", "LOSS"])
+    assert answer.found["DVA"].value == pytest.approx(solved["DVA"] / 88 * 60, rel=1e-12)
+    assert answer.found["DVA"].text == "18.56"
+    assert answer.found["LOSS"].unit == "%"
+
+
+def test_tolerances_of_a_complete_scene_give_intervals() -> None:
+    answer = ask(Case.loads(CRASH))
+    assert answer.asked == "bounds"
+    low, high = answer.intervals["DVA"]
+    assert (low, high) == pytest.approx((16.55, 20.67), abs=0.1)  # quantiles that 0.3 published
+    assert answer.found["DVA"].interval == "16.6 .. 20.7"
+    assert answer.found["DVA"].drivers.startswith("E ")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (INTERSECTION, {"SA": "55.62", "SB": "63.21", "PDOFA": "-61.7", "DVB": "54.76"}),
+        (REAR_END, {"DVA": "2.955", "DVB": "3.645", "SBF": "3.645"}),
+        (RECORDER, {"DVA": "2.94", "DVB": "3.63", "E": "0.195"}),
+    ],
+)
+def test_what_a_file_leaves_open_is_reconstructed(text: str, expected: dict[str, str]) -> None:
+    answer = ask(Case.loads(text))
+    assert answer.asked == "reconstruct"
+    assert answer.possible
+    assert {name: answer.found[name].text for name in expected} == expected
+
+
+def test_what_contradicts_physics_is_not_possible() -> None:
+    answer = ask(Case.loads(IMPOSSIBLE))
+    assert not answer.possible
+    assert "NO IMPACT" in answer.warnings[0]
+
+
+def test_exact_entries_are_given_not_found() -> None:
+    answer = ask(Case.loads(REAR_END))
+    assert "SA" not in answer.found
+    assert {"SA", "MA"} <= {entry.name for entry in answer.given}
+    assert next(entry for entry in answer.given if entry.name == "MA").text == "950 kg"
+    assert "SA" in ask(Case.loads(REAR_END), full=True).found
+
+
+def test_tolerances_are_checked_against_each_other() -> None:
+    checks = {check.name: check for check in ask(Case.loads(RECORDER)).checks}
+    assert checks["DVA"].measured == "3.10"
+    assert checks["DVA"].is_odd
+    assert abs(float(checks["DVA"].residual)) == pytest.approx(1.18, abs=0.05)
+    assert not checks["SA"].is_odd
+
+
+def test_a_result_that_needs_more_is_left_out_and_says_why() -> None:
+    scene = Case.loads("M = 4\nMA = 3\nMB = 2\nUX = -4\nUY = 3\nVX = 1\nVY = 2\nE = 0\nMU = -10")
+    answer = ask(scene, ("DVA", "PN"))
+    assert set(answer.found) == {"DVA"}
+    assert any("PN" in remark and "GA" in remark for remark in answer.remarks)
+
+
+def test_no_number_found_is_nan() -> None:
+    for text in (CRASH, REAR_END, RECORDER, INTERSECTION):
+        answer = ask(Case.loads(text), full=True)
+        numbers = answer.found.values()
+        assert all(math.isfinite(n.value) or (n.low is not None and n.text == "") for n in numbers)
+
+
+def test_the_scene_of_an_answer_is_solved_forward_to_the_same() -> None:
+    answer = ask(Case.loads(REAR_END))
+    scene = ask(scene_case(answer))
+    assert scene.asked == "forward"
+    assert scene.found["DVB"].value == pytest.approx(answer.found["DVB"].value, rel=1e-9)
+    assert 'MA = "950 kg"' in scene.case.toml()
+
+
+@pytest.mark.parametrize(
+    ("value", "interval", "decimals", "text"),
+    [
+        (36.5141, None, 2, "36.51"),
+        (36.5141, (33.2, 39.8), 2, "36.5"),  # half width 3.3: two digits
+        (36.5141, (36.5141 - 0.0031, 36.5141 + 0.0031), 2, "36.5141"),
+        (36.5141, (36.5141 - 1e-9, 36.5141 + 1e-9), 2, "36.5141"),  # two more decimals at most
+        (-0.0004, None, 2, "0.00"),
+        (123456.0, None, -2, "123500"),
+        (2.5e-12, None, 15, "2.500e-12"),
+        (math.inf, None, 2, "inf"),
+    ],
+)
+def test_one_rule_of_rounding(
+    value: float, interval: tuple[float, float] | None, decimals: int, text: str
+) -> None:
+    assert rounded(value, decimals_with(interval, decimals) if interval else decimals) == text
+
+
+@pytest.mark.parametrize("name", ["crash.toml", "rear.toml", "recorder.toml", "intersection.toml"])
+def test_a_number_has_the_same_digits_everywhere(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(FILES[name], "utf-8")
+    answer = ask(Case.load(str(tmp_path / name)), full=True)
+    assert set(answer.found) <= set(ALL)
+    printed = command("solve", name, "--full", folder=tmp_path).out
+    record = json.loads(command("solve", name, "--full", "--json", folder=tmp_path).out)
+    command("report", name, "-o", "case.html", folder=tmp_path)
+    page = (tmp_path / "case.html").read_text("utf-8")
+    table = printed.partition("CHECKED")[0].splitlines()
+    rows = {line.split()[0]: line.split() for line in table if line[:1].isupper()}
+    in_json = {number["name"]: number for number in record["found"]}
+    for number in answer.found.values():
+        assert number.text in rows[number.name][1:2] or not number.text
+        assert in_json[number.name]["text"] == number.text
+        assert in_json[number.name]["low_text"] == number.low_text
+        assert number.text in page or number.name not in page

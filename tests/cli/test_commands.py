@@ -1,0 +1,232 @@
+"""Each command on real files: what it prints, its files, and its exit status."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from cases import FILES
+from commands import command
+
+import impact88
+from impact88.cli import COMMANDS, GONE
+from impact88.cli.output import FORMS
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, "utf-8")
+    printed = impact88.run(impact88.sample(1)).page
+    (tmp_path / "printout.txt").write_text(printed, "utf-8")
+    (tmp_path / "altered.txt").write_text(printed.replace("-13.263", "-13.363"), "utf-8")
+    (tmp_path / "scenes.jsonl").write_text(
+        json.dumps({"id": 1, "scene": dict(impact88.sample(1))}) + "\n", "utf-8"
+    )
+    return tmp_path
+
+
+STATUSES = """
+0 run --sample 1
+0 run crash.toml
+0 run rear.toml
+0 run --sample 1 --arithmetic float64
+0 run --sample 1 --no-dos --raw
+0 run --sample 1 --set MA=0
+1 run --sample 1 --set IA=0
+0 solve crash.toml
+0 solve rear.toml
+1 solve impossible.toml
+1 solve --sample 1 --set UX=29.04
+0 solve --sample 1 --sweep MU=0:1:3 --outputs DVA
+1 solve cases.csv --scene crash.toml --outputs DVA
+0 scene
+0 scene rear-end --units metric
+0 scene crash.toml --set MU=.7
+0 report crash.toml -o case.html
+0 report --sample 1 -o scene.svg
+1 report impossible.toml -o case.html
+0 verify printout.txt
+1 verify altered.txt
+1 verify --brief printout.txt altered.txt
+0 verify --json printout.txt
+0 oracle scenes.jsonl
+0 oracle --vectors 3
+0 basic hello.bas
+1 basic broken.bas
+0 chapter example
+0 chapter staged
+0 chapter delta-v --set MA=96 --set MB=145 --set SA=36.667 --set SB=58.667 --set LOSS=37.4
+0 chapter colinear --set MA=2 --set MB=1 --set E=.2 --set UN=-5 --set VN=0
+0 --version
+0 help
+"""
+
+
+@pytest.mark.parametrize("line", STATUSES.strip().splitlines())
+def test_exit_statuses(line: str, folder: Path) -> None:
+    status, *words = line.split()
+    outcome = command(*words, input="BRACH\n", folder=folder)
+    assert outcome.status == int(status), outcome
+    assert "Traceback" not in outcome.err
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_begins_with_an_example(name: str) -> None:
+    outcome = command("help", name)
+    assert outcome.status == 0
+    assert outcome.out.startswith(f"impact88 {name} ")
+    assert max(map(len, outcome.out.splitlines())) <= 100
+    assert outcome.out == command(name, "--help").out
+
+
+@pytest.mark.parametrize("name", GONE)
+def test_a_command_that_is_gone_says_what_to_use(name: str) -> None:
+    outcome = command(name, "crash.toml")
+    assert outcome.status == 2
+    assert outcome.err == f"impact88: {name} is not a command any more; use {GONE[name]}\n"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "run --sample 1 --json",
+        "solve rear.toml --json",
+        "verify printout.txt --json",
+        "chapter example --json",
+        "selfcheck --json",
+    ],
+)
+def test_json_has_a_version(line: str, folder: Path) -> None:
+    outcome = command(*line.split(), folder=folder)
+    record = json.loads(outcome.out)
+    name, form, version = record["schema"].split("/")
+    assert (name, FORMS[form]) == ("impact88", int(version))
+    assert record["version"] == impact88.__version__
+
+
+def test_run_asks_standard_input(folder: Path) -> None:
+    outcome = command("run", input=FILES["replies.txt"])
+    assert "VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)" in outcome.out
+    assert outcome.out == impact88.run(impact88.sample(1)).page
+
+
+def test_a_dash_is_standard_input() -> None:
+    solved = command("solve", "-", "--from", "toml", input=FILES["rear.toml"])
+    assert (solved.status, solved.err) == (0, "")
+    verified = command("verify", "-", input=impact88.run(impact88.sample(2)).page)
+    assert verified.status == 0
+    table = "MU,DVA\n.5,1\n"
+    assert command("solve", "-", "--set", "MA=1", input=table).status == 2
+
+
+def test_set_is_editing_the_file(folder: Path) -> None:
+    edited = FILES["crash.toml"].replace("MU = 0.5", "MU = 0.7")
+    (folder / "edited.toml").write_text(edited, "utf-8")
+    changed = command("solve", "crash.toml", "--set", "MU=0.7", folder=folder)
+    assert changed.out == command("solve", "edited.toml", folder=folder).out
+
+
+def test_bad_rows_are_named_and_the_others_solved(folder: Path) -> None:
+    words = "solve cases.csv --scene crash.toml --outputs DVA -o out.csv --errors bad.csv"
+    outcome = command(*words.split(), folder=folder)
+    assert outcome.status == 1
+    rows = (folder / "out.csv").read_text().splitlines()
+    assert [row.split(",")[-1] != "" for row in rows[1:]] == [True, False, True]
+    assert "3,MU" in (folder / "bad.csv").read_text()
+    assert "line 3: MU = 'much'" in outcome.err
+
+
+def test_write_scene_gives_a_complete_scene(folder: Path) -> None:
+    command("solve", "rear.toml", "--write-scene", "found.toml", folder=folder)
+    answer = command("solve", "found.toml", "--outputs", "DVB", "--json", folder=folder)
+    assert json.loads(answer.out)["found"][0]["text"] == "3.645"
+
+
+def test_output_files_are_whole_or_not_written(folder: Path) -> None:
+    target = folder / "page.txt"
+    target.write_text("before", "utf-8")
+    assert command("run", "--sample", "1", "-o", "page.txt", "--set", "MU=x", folder=folder).status
+    assert target.read_text("utf-8") == "before"
+    command("run", "--sample", "1", "-o", "page.txt", folder=folder)
+    assert target.read_text("utf-8") == impact88.run(impact88.sample(1)).page
+    target.chmod(0o444)
+    outcome = command("run", "--sample", "2", "-o", "page.txt", folder=folder)
+    assert (outcome.status, "read-only" in outcome.err) == (2, True)
+
+
+def test_an_output_is_never_an_input(folder: Path) -> None:
+    os.link(folder / "crash.toml", folder / "same.toml")
+    outcome = command("scene", "crash.toml", "-o", "same.toml", folder=folder)
+    assert outcome.status == 2
+    assert (folder / "crash.toml").read_text("utf-8") == FILES["crash.toml"]
+
+
+def test_the_prompt_lists_retypes_and_runs() -> None:
+    lines = "LIST 350\n280 E = 5E-03:MU = .5:EM = -.715\nRUN\n" + FILES["replies.txt"]
+    outcome = command("basic", input=lines)
+    assert "350 N = 6:M = 6: REM" in outcome.out
+    assert impact88.run(impact88.sample(1).replaced({"MU": ".5"})).page in outcome.out
+
+
+def test_the_prompt_keeps_programs(folder: Path) -> None:
+    outcome = command("basic", input="10 PRINT 2\nSAVE hello.bas\nSAVE new.bas\n", folder=folder)
+    assert "hello.bas: was neither loaded nor saved" in outcome.err
+    assert (folder / "hello.bas").read_text() == FILES["hello.bas"]
+    assert "10" in (folder / "new.bas").read_text()
+
+
+def process(*words: str, **options: object) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "impact88", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        **options,  # type: ignore[call-overload]
+    )
+
+
+def test_a_run_does_not_import_numpy() -> None:
+    code = (
+        "import sys; from impact88.cli.main import main; main(['run', '--sample', '1']); "
+        "sys.exit('numpy' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], stdout=subprocess.DEVNULL).returncode == 0
+
+
+def test_a_broken_pipe_is_no_traceback() -> None:
+    done = process("solve", "--sample", "1", "--sweep", "MU=0:1:50000")
+    assert done.stdout is not None
+    done.stdout.readline()
+    done.stdout.close()
+    assert done.wait(60) == 141
+    assert done.stderr is not None
+    assert done.stderr.read() == ""
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_a_full_disk_is_status_2() -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "impact88", "run", "--sample", "1"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert done.returncode == 2
+    assert done.stderr == "impact88 run: standard output: No space left on device\n"
+
+
+def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(args: object) -> None:
+        raise RuntimeError("unexpected")
+
+    monkeypatch.setattr("impact88.cli.scene.main", fail)
+    outcome = command("scene")
+    assert outcome.status == 3
+    assert outcome.err.startswith("impact88 scene: internal error; please report it: RuntimeError")
+    assert len(outcome.err.splitlines()) == 1
