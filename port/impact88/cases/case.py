@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 ESTIMATE = "estimate"
 COURSE = "course"
 LOCKED = "locked"
+BARRIER = to_text(math.inf)  # mass and inertia of a barrier among the texts
 OPTIONAL_OF_POINTS = "DA DB PA PB TA TB IA IB EM GA E MU WA WB".split()
 """Inputs that a scene of point masses need not have."""
 MOVES = ("CX", "CY")
@@ -215,7 +216,9 @@ class Case:
     def numbers(self) -> dict[str, float]:
         """The scene's nominal values in base units, for `mechanics.solve`."""
         return {
-            name: to_double(text) for name, text in self.texts.items() if name not in self.omitted
+            name: float(text) if text == BARRIER else to_double(text)
+            for name, text in self.texts.items()
+            if name not in self.omitted
         }
 
     @property

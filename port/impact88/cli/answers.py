@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ..report.answers import Answer, Number
 from .output import paragraph, table
@@ -20,7 +20,7 @@ def answer_lines(answer: Answer) -> Iterator[str]:
         yield ""
         if len(impacts) > 1:
             yield f"IMPACT {number} OF {len(impacts)}"
-        yield from _found_lines(impact)
+        yield from number_lines(impact.found.values())
         if impact.checks:
             yield from ("", *_check_lines(impact))
     yield ""
@@ -37,9 +37,9 @@ def answer_lines(answer: Answer) -> Iterator[str]:
         yield from paragraph(text, "-", 2)
 
 
-def _found_lines(answer: Answer) -> list[str]:
-    """Return the table of results."""
-    numbers = list(answer.found.values())
+def number_lines(numbers: Iterable[Number]) -> list[str]:
+    """Return a table of results, and what they depend on."""
+    numbers = list(numbers)
     head = ["", "value", "90 % interval", "unit", ""]
     if not any(number.interval for number in numbers):
         head[2] = ""

@@ -179,22 +179,22 @@ def view_of(args: Args) -> dict[str, str | None]:
 
 
 def case_of(args: Args) -> Case:
-    """Return the case that the options give.
-
-    Raises
-    ------
-    UserError
-        Unless exactly one of file and sample is given; for a file that is not a case."""
-    if bool(args.file) == bool(args.sample):
-        raise UserError("expected one collision: a FILE.toml, or --sample 1, 2 or 3")
-    return changed(sample_case(args) if args.sample else file_case(args.file, args), args)
-
-
-def file_case(path: str, args: Args) -> Case:
-    """Return the case in a file."""
+    """Return the case that the options give: a file or a published run, changed by ``--set``, or
+    what ``--set`` gives alone. Raises UserError if none or several are given."""
     from ..cases.case import Case
+    from ..cases.units import View
 
-    return Case.load(path, **view_of(args))
+    if args.file and args.sample:
+        raise UserError("a file and --sample are both given; expected one of them")
+    if args.sample:
+        case = sample_case(args)
+    elif args.file:
+        case = Case.load(args.file, **view_of(args))
+    elif args.set:
+        case = Case.of({}, "--set", View.of(**view_of(args)))
+    else:
+        raise UserError("no collision is given; expected a FILE.toml, --sample N, or --set")
+    return changed(case, args)
 
 
 def changed(case: Case, args: Args) -> Case:

@@ -249,6 +249,8 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
     """
     if is_forward(case):
         names = tuple(wanted) or (ALL if full else FORWARD)
+        if math.isinf(case.numbers["MB"]):  # a barrier
+            names = tuple(name for name in names if "B" not in name or name in wanted)
         return _forward(case, names, seed)
     exact = {name for name, amount in case.entries.items() if not amount.varies}
     names = tuple(wanted) or (ALL if full else tuple(n for n in BACKWARD if n not in exact))
