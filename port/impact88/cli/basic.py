@@ -17,8 +17,6 @@ import select
 import signal
 import sys
 from contextlib import ExitStack, suppress
-from stat import S_ISREG
-from typing import IO
 
 from ..apple.applesoft.console import EndOfInput
 from ..apple.applesoft.errorcodes import ApplesoftError
@@ -186,7 +184,7 @@ def _stay_at_prompt(apple: Applesoft, terminal: Terminal, args: options.Args) ->
     own_files = {os.path.realpath(args.program)} if args.program else set()
 
     def is_disk_command(line: str) -> bool:
-        return not args.no_dos and _disk_command(apple, terminal, args.printer, own_files)
+        return not args.no_dos and _disk_command(apple, terminal, own_files)
 
     apple.prompt(is_disk_command)
     print()
@@ -218,39 +216,15 @@ def load_program(apple: Applesoft, path: str | None) -> None:
         note("basic", f"{source}: {remark}")
 
 
-def save_program(apple: Applesoft, path: str, printer: str | None, own_files: set[str]) -> None:
-    """Write the program as text, and say on stderr if text cannot hold all of it.
-
-    Raises UserError for a file that this command reads or writes otherwise, and for an existing
-    one that is not among ``own_files`` (real paths)."""
-    if printer and os.path.realpath(path) == os.path.realpath(printer):
-        raise UserError("is the printer's paper; expected another file", path)
-    if any(_is_same_file(path, stream) for stream in (sys.stdin, sys.stdout, sys.stderr)):
-        raise UserError("is the input or the output of this command; expected another file", path)
-    if os.path.isfile(path) and os.path.realpath(path) not in own_files:
+def save_program(apple: Applesoft, path: str, own_files: set[str]) -> None:
+    """Write the program as text. Raises UserError for an existing file that is not among
+    ``own_files`` (real paths)."""
+    if os.path.exists(path) and os.path.realpath(path) not in own_files:
         raise UserError("was neither loaded nor saved in this session; expected a new file", path)
     text = apple.source()
     with replacing(path) as file:
         file.write(text)
-    try:
-        lines = read_program(text).lines
-    except UserError as error:
-        note("basic", f"{path}: text cannot hold this program: {error}")
-        return
-    changed = [line for line in apple.machine.lines() if line not in lines]
-    if changed:
-        note("basic", f"{path}: text cannot hold line {changed[0][0]} as it is; LOAD makes another")
-    else:
-        note("basic", f"{path}: saved, {len(lines)} line{'s' * (len(lines) != 1)}")
-
-
-def _is_same_file(path: str, stream: IO[str]) -> bool:
-    """Return True if a stream reads or writes the regular file of that name."""
-    try:
-        file = os.stat(path)
-        return S_ISREG(file.st_mode) and os.path.samestat(file, os.fstat(stream.fileno()))
-    except (OSError, ValueError, AttributeError):  # no such file; a stream closed or of no file
-        return False
+    note("basic", f"{path}: saved, {text.count(chr(10))} lines")
 
 
 def _run_file(apple: Applesoft, terminal: Terminal, is_staying: bool) -> int:
@@ -274,23 +248,20 @@ def _run_file(apple: Applesoft, terminal: Terminal, is_staying: bool) -> int:
     return int(error is not None)
 
 
-def _disk_command(
-    apple: Applesoft, terminal: Terminal, printer: str | None, own_files: set[str]
-) -> bool:
+def _disk_command(apple: Applesoft, terminal: Terminal, own_files: set[str]) -> bool:
     """Do LOAD and SAVE, which the disk system takes. Returns False for any other line."""
     word, _, name = terminal.last_line.strip().partition(" ")
     word, name = word.upper(), name.strip()
     if word not in ("LOAD", "SAVE"):
         return False
-    if len(name) > 1 and name[0] == name[-1] == '"':
-        name = name[1:-1]
+    name = name.strip('"')
     try:
         if not name:
             raise UserError(f"{word} needs a file's name: {word} mine.bas")
         if word == "LOAD":
             load_program(apple, name)
         else:
-            save_program(apple, name, printer, own_files)
+            save_program(apple, name, own_files)
         own_files.add(os.path.realpath(name))
     except UserError as error:
         note("basic", str(error))
