@@ -497,12 +497,13 @@ def _checks(case: Case, impact: Reconstruction) -> tuple[Check, ...]:
         shown = [
             float(case.view.shown(name, x)) for x in (test.measured, test.adjusted, test.by_others)
         ]
-        deviation = abs(float(case.view.map(name)[0])) ** -1 * test.sd
+        deviation = test.sd / abs(float(case.view.map(name)[0]))
         decimals = decimals_of([deviation], OF_INTERVAL)
-        texts = [rounded(x, decimals) for x in shown]
-        is_odd = name in impact.evidence.at_odds
-        residual = rounded(test.residual, 1)
-        checks.append(Check(name, unit_of(case, name), *texts, residual, is_odd))
+        measured, adjusted, by_others = (rounded(x, decimals) for x in shown)
+        residual, is_odd = rounded(test.residual, 1), name in impact.evidence.at_odds
+        checks.append(
+            Check(name, unit_of(case, name), measured, adjusted, by_others, residual, is_odd)
+        )
     return tuple(checks)
 
 
