@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from ..layout import paragraph, table
 from ..report.answers import Answer, Number
-from .output import paragraph, table
 
 LABEL = 10  # columns of the words at the left
 

@@ -10,8 +10,9 @@ those of the final velocities against 50 digits (needs pip install 'impact88[ora
 from __future__ import annotations
 
 from ..errors import library
+from ..layout import table
 from . import options
-from .output import print_json, progress, table
+from .output import print_json, progress
 
 QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT = 100, 3, 0.05
 

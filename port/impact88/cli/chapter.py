@@ -19,17 +19,18 @@ exit status: 0 done; 1 a printed number that nothing explains, or an impact that
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
 from .. import status
 from ..cases.case import Case
 from ..errors import UserError
+from ..layout import paragraph
 from ..report.answers import ask, numbers_of
 from . import options
 from .answers import answer_lines, number_lines
-from .output import paragraph, print_json, table
+from .output import print_json
 
 CATEGORIES = {
     "60-side": "60° FRONT TO SIDE",
@@ -181,7 +182,7 @@ def _losses(
 
 
 def _staged(args: options.Args) -> int:
-    from ..chapter import staged, validation
+    from ..chapter import staged, validation, words
 
     compared = staged.comparison()
     if args.json:
@@ -194,101 +195,25 @@ def _staged(args: options.Args) -> int:
         }
         print_json("chapter", record)
     elif args.validation:
-        print("\n".join(_validation_lines()))
+        print("\n".join(words.validation_lines()))
     elif args.cells:
-        print("\n".join(_cell_lines()))
+        print("\n".join(words.cell_lines()))
+    elif args.table:
+        print("\n".join(words.table_lines(args.table)))
     else:
-        print("\n".join(_table_lines(args.table) if args.table else _comparison_lines()))
+        print("\n".join(words.comparison_lines()))
     return int(any(cell.explanation == "not explained" for cell in compared))
-
-
-def _comparison_lines() -> Iterator[str]:
-    from ..chapter.staged import COLUMNS_2, comparison
-
-    rows: dict[int, list[str]] = {}
-    cells = comparison()
-    for cell in cells:
-        mark = "" if cell.agrees else "!"
-        value = "lost" if math.isnan(cell.value) else f"{cell.value:.2f}"
-        text = f"{cell.printed:.1f} {value}{mark:1}"
-        rows.setdefault(cell.collision, [str(cell.collision)]).append(text)
-    yield "Table 2: printed value, recomputed value (! differs); loss in percent, dV in ft/s"
-    yield from table([["no.", *(f"{name} " for name in COLUMNS_2)], *rows.values()])
-    yield f"{sum(cell.agrees for cell in cells)} of {len(cells)} agree within their rounding."
-    for cell in cells:
-        if not cell.agrees:
-            yield from paragraph(f"{cell.collision}, {cell.column}: {cell.explanation}", "!", 2)
-
-
-def _cell_lines() -> Iterator[str]:
-    from ..chapter.staged import emendations
-
-    for cell in emendations():
-        change = f"{cell.printed or 'blank'} -> {cell.emended or 'no value'}"
-        place = "the row" if cell.column == "*" else cell.column
-        yield f"Table {cell.table}, {cell.row}, {place}: {cell.kind}: {change}"
-        yield from paragraph(cell.evidence, "", 4)
-
-
-def _table_lines(number: int) -> Iterator[str]:
-    from ..chapter.staged import collisions
-
-    rows: list[list[str]] = []
-    for collision in collisions():
-        values = collision.table2 if number == 2 else collision.scene | collision.measured
-        if not rows:
-            rows.append(["no.", *values])
-        cells = ["lost" if math.isnan(x) else f"{x:g}" for x in values.values()]
-        rows.append([str(collision.number), *cells])
-    yield f"Table {number}, emended; ft, slug, s, degrees; loss in percent; mu is P_t/P_n"
-    yield from table(rows)
-    for collision in collisions():
-        yield f"{collision.number}: {collision.category}"
-
-
-def _validation_lines() -> Iterator[str]:
-    from ..chapter import validation
-
-    rows = [["source", "test", "quantity", "reported", "computed", "unit", "by"]]
-    rows += [
-        [c.source, c.test, c.quantity, f"{c.reported:g}", f"{c.computed:.2f}", c.unit, c.kind]
-        for c in validation.checks()
-    ]
-    yield from table(rows, left=(0, 1, 2, 5, 6))
-    yield ""
-    heads = ["source", "quantity", "unit", "by", "numbers", "median", "largest"]
-    sizes = [
-        [*map(str, row[:5]), f"{row[5]:.3g}", f"{row[6]:.3g}"]
-        for row in validation.medians(validation.checks())
-    ]
-    yield from table([heads, *sizes], left=(0, 1, 2, 3))
 
 
 def _example(args: options.Args) -> int:
     from ..chapter.example import steps
+    from ..chapter.words import example_lines
 
-    verdicts = {None: "", True: "agrees", False: "DIFFERS"}
-    numbers = [number for step in steps() for number in step.numbers]
     if args.json:
         print_json("chapter", {"problem": "example", "steps": [asdict(step) for step in steps()]})
     else:
-        for place, step in enumerate(steps()):
-            print("\n".join(paragraph(f"{place}. {step.title} ({step.equation})")))
-            rows = [["  name", "value", "unit", "chapter", "", ""]]
-            rows += [
-                [
-                    f"  {n.name}",
-                    f"{n.value:.3f}",
-                    n.unit,
-                    n.printed or "",
-                    verdicts[n.agrees],
-                    n.meaning,
-                ]
-                for n in step.numbers
-            ]
-            print("\n".join(table(rows, left=(0, 2, 4, 5))))
-            print("\n".join(paragraph(step.remark, "", 2)) if step.remark else "")
-    return int(any(number.agrees is False for number in numbers))
+        print("\n".join(example_lines()))
+    return int(any(number.agrees is False for step in steps() for number in step.numbers))
 
 
 PROBLEMS: dict[str, Callable[[Any], int]] = {

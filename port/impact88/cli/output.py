@@ -1,4 +1,4 @@
-"""What commands print: JSON with the version of its form, aligned tables, progress."""
+"""What commands print: JSON with the version of its form, progress, remarks."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 import math
 import sys
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -25,7 +25,6 @@ FORMS = {
 }
 """Version of each form of JSON. It rises where a field is removed, renamed or changes meaning."""
 PROGRESS_INTERVAL = 0.2  # seconds between updates on a terminal
-WIDTH = 96  # columns of a paragraph
 
 
 def print_json(form: str, record: Mapping[str, Any], indent: int | None = None) -> None:
@@ -54,32 +53,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def paragraph(text: str, label: str = "", indent: int = 0) -> list[str]:
-    """Return a text behind a label in lines of at most `WIDTH` columns; the second line and those
-    behind it are indented."""
-    from textwrap import wrap
-
-    hanging = " " * indent
-    return wrap(text, WIDTH, initial_indent=f"{label:<{indent}}", subsequent_indent=hanging) or [
-        label.rstrip()
-    ]
-
-
-def table(rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)) -> list[str]:
-    """Return lines of aligned columns, two blanks between; those in ``left`` are left-aligned, and
-    columns without text are left out."""
-    cells = [list(row) for row in rows]
-    columns = [
-        (number, column) for number, column in enumerate(zip(*cells, strict=True)) if any(column)
-    ]
-    aligned = []
-    for number, column in columns:
-        width = max(map(len, column))
-        align = str.ljust if number in left else str.rjust
-        aligned.append([align(cell, width) for cell in column])
-    return ["  ".join(row).rstrip() for row in zip(*aligned, strict=True)]
 
 
 class Progress:
