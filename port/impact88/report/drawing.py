@@ -1,0 +1,661 @@
+"""The scene from above as an SVG picture: bodies, velocities, velocity changes, spins, impulse.
+
+The contact point is the origin. It lies DA at TA + PA from A's center of gravity and DB at TB + PB
+from B's (line 330 of the listing); A faces TA + 180 and B faces TB. Points in the plane are
+complex, x + iy along the listing's axes; paper has y downwards. The picture is what one sees from
+above whatever the axes of the case: of SAE axes y is shown to the right of x, and with compass
+headings north is up. The values come from a case and its answer; nothing of the impact is computed.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping, Sequence
+from html import escape
+from typing import NamedTuple
+
+import numpy as np
+
+from ..cases import Case
+from ..cases.motion import VECTORS
+from ..errors import UserError, library, printable
+from ..names import IMPULSE, LENGTH, MASS, VELOCITY, missing
+from .answers import Answer
+from .labels import Label, leader, place, sampled, text_element, text_width
+
+COLOURS = {"A": "#0068a3", "B": "#bd4f00", "P": "#99356f"}
+"""Okabe and Ito's blue, vermilion and purple, darkened for thin lines and small texts."""
+GREY = "#595959"
+CLASSES = (
+    (450.0, "a motorcycle", 2.2, 0.8),
+    (2500.0, "a car", 4.6, 1.8),
+    (4500.0, "a light truck", 5.7, 2.0),
+    (16000.0, "a heavy truck", 9.0, 2.5),
+    (math.inf, "a truck with a trailer", 19.0, 2.6),
+)
+"""Classes of vehicles: largest mass in kg, words, usual length and width in m."""
+PROPORTION = 2.6  # length over width of a vehicle of unknown class
+DISC_DIAMETER = 0.6  # of a point mass, as a fraction of the length of its class
+WALL_RATIO = 1e4  # a body at rest so much heavier than the other is drawn as a barrier
+LARGEST = 1e100  # the largest number drawn: products of some must be doubles
+
+WIDTH = 480.0  # px of the picture
+MARGIN = 46.0  # px around the shapes, for labels
+TALLEST = 360.0  # px of the shapes
+ROW = 17.0  # px between rows of the legend
+LEGEND = 11.0  # px, size of its type
+SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of the longest body
+FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
+TINY_SPIN = 1e-4  # of speed over length: a smaller spin is not drawn
+SIDESTEP = 6.0  # px by which an arrow moves off one that it would cover
+PLANE_DASH = "9 3 2 3"
+ARROWS = {"before": ("v", 1.6, "5 3"), "after": ("V", 2.4, ""), "change": ("ΔV", 1.4, "1.5 2.5")}
+"""Velocities: symbol, width in px and dashes of their arrows."""
+
+
+class Body(NamedTuple):
+    """One body in plan.
+
+    Parameters
+    ----------
+    name : {"A", "B"}
+        Its name.
+    center, front : complex
+        Center of gravity, and unit vector from there to its front.
+    length, width : float
+        Size of its outline.
+    origin : str
+        Where the size comes from, in words.
+    kind : {"vehicle", "disc", "wall"}
+        Shape drawn.
+    faces : bool
+        True if its front is given.
+    before, after : complex or None
+        Velocities.
+    spins : tuple of (float or None)
+        Spins before and after.
+    """
+
+    name: str
+    center: complex
+    front: complex
+    length: float
+    width: float
+    origin: str
+    kind: str
+    faces: bool
+    before: complex
+    after: complex | None
+    spins: tuple[float | None, float | None]
+
+    @property
+    def outline(self) -> list[complex]:
+        """Corners of its outline, the front's two first; a disc's rim."""
+        if self.kind == "disc":
+            return [self.center + cmath.rect(self.length / 2, k * math.tau / 36) for k in range(36)]
+        corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
+        return [self.at(i / 2, j / 2) for i, j in corners]
+
+    def at(self, along: float, across: float) -> complex:
+        """Return the point at fractions of the length ahead and of the width to the left."""
+        return self.center + self.front * complex(along * self.length, across * self.width)
+
+    def clock(self, force: complex) -> str:
+        """Return the hour on the body's clock from which a force comes; 12 is its front."""
+        degrees = math.degrees(cmath.phase(self.front / -force))
+        return f"{round(degrees / 30) % 12 or 12} o'clock"
+
+
+class Scene(NamedTuple):
+    """What is drawn, in base units along the listing's axes."""
+
+    values: dict[str, float]
+    bodies: dict[str, Body]
+    normal: complex
+    impulse: complex | None
+    moved_apart: bool
+
+
+def draw(case: Case, answer: Answer, *, titled: bool = False) -> str:
+    """Return the scene from above as one SVG element.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    answer : Answer
+        Its answer.
+    titled : bool, default False
+        Write the title of the case above the scene.
+
+    Returns
+    -------
+    str
+        The element; it uses no styles, so that it may be part of any page.
+
+    Raises
+    ------
+    UserError
+        If a velocity before the impact or the contact plane is not known, or a value is too large.
+    """
+    scene = _scene(case, answer)
+    sheet = _Sheet(scene, case)
+    sheet.draw_bodies()
+    sheet.draw_plane()
+    sheet.draw_motion()
+    sheet.draw_impulse()
+    sheet.write_labels()
+    bottom = sheet.draw_legend()
+    top = 0.0
+    title = printable(case.title) or "Scene from above"
+    if titled and case.title:
+        top = -24.0
+        sheet.parts.append(text_element(WIDTH / 2 - 8j, title, "#000", 13, True))
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {top:g} {WIDTH:g} {bottom - top:.0f}" '
+        'role="img" font-family="DejaVu Sans, Verdana, Arial, sans-serif">'
+    )
+    words = f"<title>{escape(title)}</title><desc>{escape(describe(scene, case))}</desc>"
+    return "\n".join([head + words, *sheet.parts, "</svg>"])
+
+
+def to_png(svg: str, width: int = 1440) -> bytes:
+    """Return an SVG as PNG on white. Raises UserError if resvg-py is not installed."""
+    resvg = library("resvg_py", "report", "a PNG picture")
+    return bytes(resvg.svg_to_bytes(svg_string=svg, width=width, background="white"))
+
+
+def describe(scene: Scene, case: Case) -> str:
+    """Return a scene in words, for those who cannot see it."""
+    view = case.view
+    sentences = []
+    for body in scene.bodies.values():
+        words = f"{body.name}: {_number(view, 'SA', abs(body.before))} before"
+        if body.after is not None:
+            change = _number(view, "DVA", abs(body.after - body.before))
+            words += f", {_number(view, 'SA', abs(body.after))} after, velocity change {change}"
+        if scene.impulse and body.faces:
+            force = scene.impulse if body.name == "A" else -scene.impulse
+            words += f", force from {body.clock(force)}"
+        sentences.append(f"{words}.")
+    return f"The scene from above. {' '.join(sentences)}"
+
+
+def _number(view, name: str, value: float, with_unit: bool = True) -> str:
+    """Return a base value as shown."""
+    text = f"{view.shown(name, value):z.4g}".replace("-", "−")
+    unit = view.unit(name) if with_unit else ""
+    return f"{text} {unit}".rstrip()
+
+
+def _unit(degrees: float) -> complex:
+    return cmath.rect(1.0, math.radians(degrees))
+
+
+def _scene(case: Case, answer: Answer) -> Scene:
+    """Return what is to be drawn. Raises UserError."""
+    values = _base_values(case, answer)
+    needed = ["UX", "UY", "VX", "VY", "GA"]
+    if absent := [name for name in needed if name not in values]:
+        raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
+    if large := [n for n, x in values.items() if LARGEST < abs(x) < math.inf]:
+        raise UserError(f"{large[0]} = {values[large[0]]:g} is too large to be drawn")
+    normal = _unit(values["GA"])
+    sizes = _sizes(values, case)
+    moved_apart = not values.get("DA") and not values.get("DB")
+    bodies = {}
+    for name in "AB":
+        bodies[name] = _body(name, values, case, sizes[name], moved_apart)
+    return Scene(values, bodies, normal, _impulse(values, bodies), moved_apart)
+
+
+def _base_values(case: Case, answer: Answer) -> dict[str, float]:
+    """Return what is known of the impact, given or computed, in base units."""
+    values = {name: amount.value for name, amount in {**case.entries, **case.sizes}.items()}
+    values |= case.numbers
+    for name, value in answer.found.items():
+        factor, offset = case.view.map(name)
+        values[name] = float(offset) + float(factor) * float(value)
+    for speed, (x, y, course) in VECTORS.items():
+        if not {x, y} <= {*values} and speed in values and (course in values or not values[speed]):
+            velocity = values[speed] * _unit(values.get(course, 0.0))
+            values |= {x: velocity.real, y: velocity.imag}
+    return {name: value for name, value in values.items() if not math.isnan(value)}
+
+
+def _sizes(values: Mapping[str, float], case: Case) -> dict[str, tuple[float, float, str]]:
+    """Return length and width of both bodies, and where they come from in words."""
+    sizes = {name: _usual_size(name, values, case) for name in "AB"}
+    usual = [size for size in sizes.values() if size] or [(1.0, 1 / PROPORTION, "in any size")]
+    result = {}
+    for name in "AB":
+        length, width, origin = sizes[name] or usual[0]
+        if f"L{name}" not in values:  # the contact point lies within the outline
+            contact = values.get(f"D{name}", 0.0) * _unit(values.get(f"P{name}", 0.0))
+            length = max(length, 2 * abs(contact.real))
+            width = max(width, 2 * abs(contact.imag))
+        result[name] = (length, width, origin)
+    return result
+
+
+def _usual_size(
+    name: str, values: Mapping[str, float], case: Case
+) -> tuple[float, float, str] | None:
+    """Return the size of a body as given, by its class of weight, or by its inertia."""
+    if f"L{name}" in values and f"B{name}" in values:
+        return values[f"L{name}"], values[f"B{name}"], "as measured"
+    mass, inertia = values.get(f"M{name}", math.nan), values.get(f"I{name}", math.nan)
+    if case.view.units and 0 < mass < math.inf:
+        kilograms = mass * float(case.view.base_size(MASS))
+        meter = 1 / float(case.view.base_size(LENGTH))
+        _, words, length, width = next(row for row in CLASSES if kilograms <= row[0])
+        return length * meter, width * meter, f"as {words} of its weight"
+    square = 12 * inertia / mass if mass else math.nan
+    distance = values.get(f"D{name}", 0.0)
+    if 0 < square < 1e12 * max(1.0, distance**2):
+        length = math.sqrt(square / (1 + PROPORTION**-2))
+        return length, length / PROPORTION, "by its inertia"
+    if distance:
+        return 2.4 * abs(distance), 2.4 * abs(distance) / PROPORTION, "by its contact point"
+    return None
+
+
+def _body(
+    name: str,
+    values: Mapping[str, float],
+    case: Case,
+    size: tuple[float, float, str],
+    moved_apart: bool,
+) -> Body:
+    """Return one body in plan."""
+    side = 1 if name == "A" else -1
+    x, y = ("UX", "UY") if name == "A" else ("VX", "VY")
+    before = complex(values[x], values[y])
+    after = complex(values.get(f"V{name}X", math.nan), values.get(f"V{name}Y", math.nan))
+    theta, inward = values.get(f"T{name}"), side * _unit(values["GA"])
+    if theta is None:
+        course = before or (0j if cmath.isnan(after) else after) or -inward
+        front = course / abs(course)
+    else:
+        front = -side * _unit(theta)
+    length, width, origin = size
+    masses = [abs(values.get(f"M{which}", 1.0)) for which in (name, "B" if name == "A" else "A")]
+    kind = "disc" if values.get("M") == 4 else "vehicle"
+    if masses[0] >= WALL_RATIO * masses[1] and not before and not values.get(f"W{name}"):
+        kind = "wall"
+    if kind == "disc":
+        length = width = DISC_DIAMETER * length
+    if moved_apart:
+        turned = front / inward
+        half = abs(turned.real) * length + abs(turned.imag) * width
+        center = inward * (length if kind == "disc" else half) / 2
+    else:
+        angle = values.get(f"T{name}", 0.0) + values.get(f"P{name}", 0.0)
+        center = side * values.get(f"D{name}", 0.0) * _unit(angle)
+    faces = theta is not None and f"T{name}" not in case.omitted
+    spins = (values.get(f"W{name}"), values.get(f"W{name}F"))
+    if kind == "disc":
+        spins = (None, None)
+    return Body(
+        name,
+        center,
+        front,
+        length,
+        width,
+        origin,
+        kind,
+        faces,
+        before,
+        after if cmath.isfinite(after) else None,
+        spins,
+    )
+
+
+def _impulse(values: Mapping[str, float], bodies: Mapping[str, Body]) -> complex | None:
+    """Return the impulse on A: along n and t as computed, else as momentum gained by a body."""
+    if "PN" in values and "PT" in values:
+        return complex(values["PN"], values["PT"]) * _unit(values["GA"]) or None
+    for name, sense in (("A", 1), ("B", -1)):
+        body = bodies[name]
+        if body.kind != "wall" and body.after is not None and f"M{name}" in values:
+            return sense * values[f"M{name}"] * (body.after - body.before) or None
+    return None
+
+
+class _Sheet:
+    """The paper: its scale, what is drawn on it, and labels still to be placed."""
+
+    def __init__(self, scene: Scene, case: Case) -> None:
+        self.scene, self.view = scene, case.view
+        self.parts: list[str] = []
+        self.labels: list[Label] = []
+        self.arrows: list[np.ndarray] = []
+        self._ink: list[np.ndarray] = []
+        self._weights: list[np.ndarray] = []
+        # north, which is x of SAE axes, is up
+        north_is_x = case.view.headings == "compass" and case.view.axes == "sae"
+        self.turn = 1j if north_is_x else 1 + 0j
+        drawn = [body for body in scene.bodies.values() if body.kind != "wall"]
+        self.drawn = drawn or list(scene.bodies.values())
+        self.size = max(body.length for body in self.drawn)
+        speeds = [abs(v) for body in self.drawn for v in (body.before, body.after) if v is not None]
+        self.speed = max(speeds)
+        self.per_speed = SPEED_REACH * self.size / self.speed if self.speed else 0.0
+        self.half_plane = 0.62 * self.size * 1j * scene.normal
+        self._fit()
+
+    def _fit(self) -> None:
+        """Choose scale and origin so that all that is drawn is on the paper."""
+        points = [self.half_plane, -self.half_plane]
+        if self.scene.impulse:
+            force = FORCE_REACH * self.size * self.scene.impulse / abs(self.scene.impulse)
+            points += [force, -force]
+        for body in self.drawn:
+            points += body.outline
+            points += [end for ends in self._velocities(body).values() for end in ends]
+        if len(self.drawn) < 2:
+            points += self._wall_face()
+        turned = [point * self.turn for point in points]
+        xs, ys = [p.real for p in turned], [p.imag for p in turned]
+        width, height = max(xs) - min(xs), max(ys) - min(ys)
+        self.scale = min((WIDTH - 2 * MARGIN) / width, TALLEST / height)
+        self.height = self.scale * height + 2 * MARGIN
+        middle = complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
+        self.origin = complex(WIDTH, self.height) / 2 - self.scale * middle.conjugate()
+
+    def at(self, point: complex) -> complex:
+        """Return a point of the plane on paper."""
+        return self.origin + self.scale * (point * self.turn).conjugate()
+
+    def along(self, vector: complex) -> complex:
+        """Return a vector of the plane on paper."""
+        return self.at(vector) - self.at(0j)
+
+    def line(
+        self,
+        points: Sequence[complex],
+        colour: str,
+        width: float,
+        *,
+        dash: str = "",
+        fill: str = "",
+        closed: bool = False,
+        weight: float = 1.0,
+    ) -> None:
+        """Draw a line through points on paper; ``weight`` is the cost of a label over it."""
+        path = "L".join(f"{p.real:.1f} {p.imag:.1f}" for p in points) + "Z" * closed
+        look = f'fill="{fill}" fill-opacity=".14"' if fill else 'fill="none"'
+        look += f' stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"'
+        look += f' stroke-dasharray="{dash}"' if dash else ""
+        self.parts.append(f'<path d="M{path}" {look}/>')
+        ink = sampled([*points, points[0]] if closed else points)
+        self._ink.append(ink)
+        self._weights.append(np.full(len(ink), weight))
+
+    def head(self, tip: complex, direction: complex, colour: str, size: float) -> None:
+        """Draw the head of an arrow."""
+        back = size * direction / abs(direction)
+        corners = [tip, tip - back * (1 + 0.38j), tip - back * (1 - 0.38j)]
+        path = "L".join(f"{p.real:.1f} {p.imag:.1f}" for p in corners)
+        self.parts.append(f'<path d="M{path}Z" fill="{colour}"/>')
+
+    def arrow(
+        self, start: complex, end: complex, colour: str, width: float, dash: str = ""
+    ) -> tuple[complex, complex] | None:
+        """Draw an arrow beside those that it would cover; return its ends, None if too short."""
+        run = end - start
+        if abs(run) < 1.0:
+            return None
+        size = min(4.0 + 2.2 * width, 0.6 * abs(run))
+        for step in (0, 1, -1, 2, -2, 3, -3):
+            aside = step * SIDESTEP * 1j * run / abs(run)
+            points = sampled([start + aside, end + aside])
+            if not any(_covers(points, other) for other in self.arrows):
+                break
+        self.arrows.append(points)
+        start, end = start + aside, end + aside
+        self.line([start, end - 0.8 * size * run / abs(run)], colour, width, dash=dash)
+        self.head(end, run, colour, size)
+        return start, end
+
+    def draw_bodies(self) -> None:
+        """Draw the outlines and the marks that show the fronts."""
+        for body in self.scene.bodies.values():
+            colour = COLOURS[body.name]
+            if body.kind == "wall" and len(self.drawn) < 2:
+                self._draw_wall(colour)
+                continue
+            outline = [self.at(point) for point in body.outline]
+            self.line(outline, colour, 1.5, fill=colour, closed=True, weight=0.3)
+            if body.kind == "vehicle":
+                glass = [[(0.22, -0.38), (0.22, 0.38)], [(-0.3, -0.36), (-0.3, 0.36)]]
+                nose = [(0.27, -0.2), (0.38, 0.0), (0.27, 0.2)]
+                for marks in (*glass, nose):
+                    points = [self.at(body.at(*mark)) for mark in marks]
+                    self.line(points, colour, 1.0, weight=0.3)
+            away = body.center or body.front
+            self.labels.append(
+                Label(self.at(body.center), self.along(away), body.name, colour, 17, True)
+            )
+
+    def _wall_face(self) -> list[complex]:
+        """Corners of a barrier behind the contact plane."""
+        body = next(b for b in self.scene.bodies.values() if b.kind == "wall")
+        depth = (1 if body.name == "A" else -1) * 0.14 * self.size * self.scene.normal
+        half = self.half_plane
+        return [half, -half, -half + depth, half + depth]
+
+    def _draw_wall(self, colour: str) -> None:
+        """Draw a barrier, hatched."""
+        corners = [self.at(point) for point in self._wall_face()]
+        self.line(corners, colour, 1.5, fill=colour, closed=True, weight=0.3)
+        for k in range(12):
+            low = corners[0] + (corners[1] - corners[0]) * (k + 0.3) / 12
+            high = corners[3] + (corners[2] - corners[3]) * (k + 0.9) / 12
+            self.line([low, high], colour, 0.8, weight=0.3)
+        name = next(b.name for b in self.scene.bodies.values() if b.kind == "wall")
+        middle = (corners[2] + corners[3]) / 2
+        self.labels.append(Label(middle, corners[2] - corners[1], name, colour, 17, True))
+
+    def draw_plane(self) -> None:
+        """Draw the contact plane, its normal and the contact point."""
+        ends = [self.at(self.half_plane), self.at(-self.half_plane)]
+        self.line(ends, "#000", 1.2, dash=PLANE_DASH, weight=0.6)
+        corner = self.at(0.78 * self.half_plane)
+        normal = self.along(self.scene.normal)
+        tip = corner + 22 * normal / abs(normal)
+        for name, end in (("n", tip), ("t", ends[0])):
+            self.line([corner, end], "#000", 1.2)
+            self.head(end, end - corner, "#000", 6)
+            self.labels.append(Label(end, end - corner, name, "#000", 11))
+
+    def _velocities(self, body: Body) -> dict[str, tuple[complex, complex]]:
+        """Return the ends of a body's arrows: before the impact up to its center, else from it."""
+        reach = self.per_speed
+        arrows = {"before": (body.center - reach * body.before, body.center)}
+        if body.after is not None and body.kind != "wall":
+            arrows["after"] = (body.center, body.center + reach * body.after)
+            change = reach * (body.after - body.before)
+            arrows["change"] = (body.center, body.center + change)
+        return arrows
+
+    def draw_motion(self) -> None:
+        """Draw velocities and spins."""
+        for body in self.drawn:
+            colour = COLOURS[body.name]
+            for kind, plane_ends in self._velocities(body).items():
+                symbol, width, dash = ARROWS[kind]
+                start, end = (self.at(point) for point in plane_ends)
+                ends = self.arrow(start, end, colour, width, dash)
+                if ends:
+                    value = abs(plane_ends[1] - plane_ends[0]) / self.per_speed
+                    text = f"{symbol}_{body.name.lower()} {_number(self.view, 'SA', value, False)}"
+                    at = ends[0] if kind == "before" else ends[1]
+                    self.labels.append(Label(at, 2 * at - sum(ends), text, colour))
+            self._draw_spins(body, colour)
+            self._ring(self.at(body.center), 3.0, colour)
+
+    def _draw_spins(self, body: Body, colour: str) -> None:
+        """Draw a body's spins as arcs around its center, behind it as seen from the contact."""
+        center = self.at(body.center)
+        behind = self.along(body.center or -body.front)
+        for spin, symbol, radius, dash in zip(
+            body.spins, ("ω", "Ω"), (17.0, 24.0), ("5 3", ""), strict=True
+        ):
+            if spin is None or abs(spin) * self.size <= TINY_SPIN * self.speed:
+                continue
+            sense = -1j if spin > 0 else 1j  # counterclockwise on paper, whose y is downwards
+            middle = radius * behind / abs(behind)
+            arc = [middle * cmath.exp(sense * math.radians(k)) for k in range(-125, 126, 10)]
+            points = [center + p for p in arc]
+            self.line(points, colour, 1.6, dash=dash)
+            self.head(points[-1] + 2 * sense * arc[-1] / radius, sense * arc[-1], colour, 7)
+            name = "WA" if symbol == "ω" else "WAF"
+            text = f"{symbol}_{body.name.lower()} {_number(self.view, name, spin, False)}"
+            self.labels.append(Label(center + middle, middle, text, colour))
+
+    def _ring(self, center: complex, radius: float, colour: str) -> None:
+        """Draw a small circle."""
+        self.parts.append(
+            f'<circle cx="{center.real:.1f}" cy="{center.imag:.1f}" r="{radius:g}" fill="#fff" '
+            f'stroke="{colour}" stroke-width="1.4"/>'
+        )
+
+    def draw_impulse(self) -> None:
+        """Draw the impulse on each body, and the contact point."""
+        contact = self.at(0j)
+        for body in self.drawn if self.scene.impulse else ():
+            impulse = self.scene.impulse or 0j
+            force = impulse if body.name == "A" else -impulse
+            symbol, width = ("P", 3.4) if body.name == "A" else ("−P", 1.8)
+            end = contact + self.along(FORCE_REACH * self.size * force / abs(force))
+            ends = self.arrow(contact, end, COLOURS["P"], width)
+            if ends:
+                hour = f" {body.clock(force)}" if body.faces else ""
+                self.labels.append(
+                    Label(ends[1], ends[1] - ends[0], f"{symbol}{hour}", COLOURS["P"])
+                )
+        self._ring(contact, 3.4, "#000")
+        self.labels.append(Label(contact, self.along(-1j * self.scene.normal), "C", "#000", 11))
+
+    def write_labels(self) -> None:
+        """Place the labels and write them."""
+        ink, weights = np.concatenate(self._ink), np.concatenate(self._weights)
+        order = sorted(self.labels, key=lambda label: label.size, reverse=True)
+        texts = []
+        for label, box in place(order, ink, weights, (2, 2, WIDTH - 2, self.height - 2)):
+            if ends := leader(label, box):
+                self.line(ends, label.colour, 0.6)
+            base = box.center + 0.36j * label.size
+            texts.append(text_element(base, label.text, label.colour, label.size, label.bold))
+        self.parts += texts
+
+    def draw_legend(self) -> float:
+        """Draw the legend below; return its lower edge."""
+        entries = self._legend()
+        top = self.height + 6
+        rows = (len(entries) + 1) // 2
+        for k, (width, dash, colour, size, text) in enumerate(entries):
+            start = complex(12 + (k // rows) * 232, top + (k % rows) * ROW)
+            end = start + (size or 30.0)
+            if size:  # a scale
+                self.line([start, end], "#000", 1.2)
+                for tick in (start, end):
+                    self.line([tick - 3j, tick + 3j], "#000", 1.2)
+            else:
+                self.line([start, end - 4 * (dash != PLANE_DASH)], colour, width, dash=dash)
+                if dash != PLANE_DASH:
+                    self.head(end, 1, colour, 4 + 2.2 * width)
+            base = complex(max(end.real, start.real + 30) + 8, start.imag + 4)
+            self.parts.append(text_element(base, text, "#000", LEGEND, anchor="start"))
+        y = self._draw_axes(top + rows * ROW + 4)
+        return y + 8
+
+    def _legend(self) -> list[tuple[float, str, str, float, str]]:
+        """Return the rows of the legend: width, dashes, colour, length of a scale, text."""
+        scene, unit = self.scene, self.view.unit("SA")
+        speed = f", {unit}" if unit else ""
+        entries = [(1.6, "5 3", "#000", 0.0, f"v: velocity before{speed}")]
+        if any(body.after is not None for body in self.drawn):
+            entries.append((2.4, "", "#000", 0.0, f"V: velocity after{speed}"))
+            entries.append((1.4, "1.5 2.5", "#000", 0.0, f"ΔV: velocity change{speed}"))
+        if scene.impulse:
+            size = _number(self.view, "PN", abs(scene.impulse))
+            entries.append((3.4, "", COLOURS["P"], 0.0, f"P: impulse on A, {size}"))
+        angle = _number(self.view, "GA", scene.values["GA"], False)
+        entries.append((1.2, PLANE_DASH, "#000", 0.0, f"contact plane, Γ = {angle}°"))
+        entries.append(self._scale("DA", self.size, self.scale))
+        if self.speed:
+            entries.append(self._scale("SA", self.speed, self.scale * self.per_speed))
+        return entries
+
+    def _scale(
+        self, name: str, extent: float, px_per_base: float
+    ) -> tuple[float, str, str, float, str]:
+        """Return the legend's row of a scale: 1, 2 or 5 times a power of ten, in units shown."""
+        per_shown = float(self.view.map(name)[0])
+        half = 0.5 * extent / per_shown
+        power = 10.0 ** math.floor(math.log10(half))
+        amount = max(step * power for step in (1, 2, 5) if step * power <= half * (1 + 1e-12))
+        words = "length" if name == "DA" else "speed"
+        text = f"{amount:g} {self.view.unit(name)}".rstrip()
+        return 1.2, "", "#000", amount * per_shown * px_per_base, f"{text} ({words})"
+
+    def _draw_axes(self, top: float) -> float:
+        """Draw the axes of the case and write the notes beside them; return the lower edge."""
+        is_sae, compass = self.view.axes == "sae", self.view.headings == "compass"
+        axes = {"x": self.turn, "y": self.turn * (-1j if is_sae else 1j)}
+        xs = [a.conjugate() for a in axes.values()]
+        corner = complex(24, top + 12) - 22 * complex(
+            min(0, *(a.real for a in xs)), min(0, *(a.imag for a in xs))
+        )
+        for name, axis in axes.items():
+            tip = corner + 22 * axis.conjugate()
+            self.line([corner, tip], GREY, 1.0)
+            self.head(tip, tip - corner, GREY, 5)
+            at = tip + 8 * axis.conjugate() + 3j
+            self.parts.append(text_element(at, name, GREY, LEGEND))
+        notes = self._notes(is_sae, compass)
+        for k, text in enumerate(notes):
+            at = complex(84, top + 8 + k * (ROW - 2))
+            self.parts.append(text_element(at, text, GREY, LEGEND - 1, anchor="start"))
+        return top + max(44, 8 + len(notes) * (ROW - 2))
+
+    def _notes(self, is_sae: bool, compass: bool) -> list[str]:
+        """Return the notes of the legend, in lines."""
+        view = self.view
+        sense = "clockwise" if is_sae else "counterclockwise"
+        words = [f"Spins in {view.unit('WA') or 'radians per time'}, positive {sense}."]
+        if compass:
+            words.append("North is up.")
+        for body in self.drawn:
+            if body.kind == "disc":
+                words.append(f"{body.name}: a point mass, drawn as a disc.")
+            else:
+                length, width = (_number(view, "DA", x) for x in (body.length, body.width))
+                words.append(f"{body.name} drawn {body.origin}, {length} by {width}.")
+        if self.scene.moved_apart:
+            words.append("Moved apart along n to be seen.")
+        if len(self.drawn) < 2:
+            words.append("Hatched: a rigid barrier.")
+        return _wrapped(" ".join(words), WIDTH - 96, LEGEND - 1)
+
+
+def _covers(points: np.ndarray, other: np.ndarray) -> bool:
+    """Return True if a third of the shorter of two lines lies along the other."""
+    distances = np.abs(points[:, None] - other)
+    near = min(len(points), len(other)) / 3
+    return bool((distances.min(axis=1) < SIDESTEP / 2).sum() > near)
+
+
+def _wrapped(text: str, width: float, size: float) -> list[str]:
+    """Return the words of a text in lines at most ``width`` px wide."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if text_width(longer, size) > width and lines[-1]:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
