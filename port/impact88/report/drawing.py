@@ -20,9 +20,10 @@ import numpy as np
 from ..cases import Case
 from ..cases.motion import VECTORS
 from ..errors import UserError, library, printable
-from ..names import IMPULSE, LENGTH, MASS, VELOCITY, missing
+from ..names import LENGTH, MASS, SPIN, VELOCITY, missing, quantity
 from .answers import Answer
 from .labels import Label, leader, place, sampled, text_element, text_width
+from .rounding import decimals_of, rounded
 
 COLOURS = {"A": "#0068a3", "B": "#bd4f00", "P": "#99356f"}
 """Okabe and Ito's blue, vermilion and purple, darkened for thin lines and small texts."""
@@ -47,11 +48,17 @@ ROW = 17.0  # px between rows of the legend
 LEGEND = 11.0  # px, size of its type
 SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of the longest body
 FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
-TINY_SPIN = 1e-4  # of speed over length: a smaller spin is not drawn
+TINY_SPIN = 0.005  # of speed over length: a smaller spin is not drawn
 SIDESTEP = 6.0  # px by which an arrow moves off one that it would cover
 PLANE_DASH = "9 3 2 3"
-ARROWS = {"before": ("v", 1.6, "5 3"), "after": ("V", 2.4, ""), "change": ("ΔV", 1.4, "1.5 2.5")}
-"""Velocities: symbol, width in px and dashes of their arrows."""
+ARROWS = {
+    "before": ("v", "S{}", 1.6, "5 3"),
+    "after": ("V", "S{}F", 2.4, ""),
+    "change": ("ΔV", "DV{}", 1.4, "1.5 2.5"),
+}
+"""Velocities: symbol, name of their size, width in px and dashes of their arrows."""
+SPINS = (("ω", "W{}", 17.0, "5 3"), ("Ω", "W{}F", 24.0, ""))
+"""Spins: symbol, name, radius in px and dashes of their arcs."""
 
 
 class Body(NamedTuple):
@@ -116,16 +123,19 @@ class Scene(NamedTuple):
     impulse: complex | None
     moved_apart: bool
 
+    def force_on(self, name: str) -> complex:
+        """Return the impulse on a body."""
+        impulse = self.impulse or 0j
+        return impulse if name == "A" else -impulse
 
-def draw(case: Case, answer: Answer, *, titled: bool = False) -> str:
+
+def draw(answer: Answer, *, titled: bool = False) -> str:
     """Return the scene from above as one SVG element.
 
     Parameters
     ----------
-    case : Case
-        The case.
     answer : Answer
-        Its answer.
+        The answer to a case.
     titled : bool, default False
         Write the title of the case above the scene.
 
@@ -139,8 +149,9 @@ def draw(case: Case, answer: Answer, *, titled: bool = False) -> str:
     UserError
         If a velocity before the impact or the contact plane is not known, or a value is too large.
     """
-    scene = _scene(case, answer)
-    sheet = _Sheet(scene, case)
+    scene, case = _scene(answer), answer.case
+    numbers = _Numbers(answer, scene)
+    sheet = _Sheet(scene, numbers)
     sheet.draw_bodies()
     sheet.draw_plane()
     sheet.draw_motion()
@@ -156,7 +167,7 @@ def draw(case: Case, answer: Answer, *, titled: bool = False) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {top:g} {WIDTH:g} {bottom - top:.0f}" '
         'role="img" font-family="DejaVu Sans, Verdana, Arial, sans-serif">'
     )
-    words = f"<title>{escape(title)}</title><desc>{escape(describe(scene, case))}</desc>"
+    words = f"<title>{escape(title)}</title><desc>{escape(_describe(scene, numbers))}</desc>"
     return "\n".join([head + words, *sheet.parts, "</svg>"])
 
 
@@ -166,36 +177,53 @@ def to_png(svg: str, width: int = 1440) -> bytes:
     return bytes(resvg.svg_to_bytes(svg_string=svg, width=width, background="white"))
 
 
-def describe(scene: Scene, case: Case) -> str:
+class _Numbers:
+    """The texts of numbers: the answer's own, others rounded like its group of that unit."""
+
+    def __init__(self, answer: Answer, scene: Scene) -> None:
+        self.view, self._found = answer.case.view, answer.found
+        bodies = scene.bodies.values()
+        speeds = [abs(v) for b in bodies for v in (b.before, b.after) if v is not None]
+        spins = [spin for body in bodies for spin in body.spins if spin is not None]
+        self._decimals = {
+            VELOCITY: decimals_of([self.view.shown("SA", max(speeds))]),
+            SPIN: decimals_of([self.view.shown("WA", spin) for spin in spins]),
+        }
+
+    def text(self, name: str, value: float, with_unit: bool = False) -> str:
+        """Return the text of a base value; ``name`` is of the quantity."""
+        shown = self.view.shown(name, value)
+        if name in self._found:
+            text = self._found[name].text
+        else:
+            decimals = self._decimals.get(quantity(name).unit, decimals_of([shown]))
+            text = rounded(shown, decimals)
+        unit = self.view.unit(name) if with_unit else ""
+        return f"{text} {unit}".rstrip().replace("-", "−", text.startswith("-"))
+
+
+def _describe(scene: Scene, numbers: _Numbers) -> str:
     """Return a scene in words, for those who cannot see it."""
-    view = case.view
     sentences = []
-    for body in scene.bodies.values():
-        words = f"{body.name}: {_number(view, 'SA', abs(body.before))} before"
+    for name, body in scene.bodies.items():
+        words = f"{name}: {numbers.text(f'S{name}', abs(body.before), True)} before"
         if body.after is not None:
-            change = _number(view, "DVA", abs(body.after - body.before))
-            words += f", {_number(view, 'SA', abs(body.after))} after, velocity change {change}"
+            after = numbers.text(f"S{name}F", abs(body.after), True)
+            change = numbers.text(f"DV{name}", abs(body.after - body.before), True)
+            words += f", {after} after, velocity change {change}"
         if scene.impulse and body.faces:
-            force = scene.impulse if body.name == "A" else -scene.impulse
-            words += f", force from {body.clock(force)}"
+            words += f", force from {body.clock(scene.force_on(name))}"
         sentences.append(f"{words}.")
     return f"The scene from above. {' '.join(sentences)}"
-
-
-def _number(view, name: str, value: float, with_unit: bool = True) -> str:
-    """Return a base value as shown."""
-    text = f"{view.shown(name, value):z.4g}".replace("-", "−")
-    unit = view.unit(name) if with_unit else ""
-    return f"{text} {unit}".rstrip()
 
 
 def _unit(degrees: float) -> complex:
     return cmath.rect(1.0, math.radians(degrees))
 
 
-def _scene(case: Case, answer: Answer) -> Scene:
+def _scene(answer: Answer) -> Scene:
     """Return what is to be drawn. Raises UserError."""
-    values = _base_values(case, answer)
+    case, values = answer.case, _base_values(answer)
     needed = ["UX", "UY", "VX", "VY", "GA"]
     if absent := [name for name in needed if name not in values]:
         raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
@@ -203,20 +231,19 @@ def _scene(case: Case, answer: Answer) -> Scene:
         raise UserError(f"{large[0]} = {values[large[0]]:g} is too large to be drawn")
     normal = _unit(values["GA"])
     sizes = _sizes(values, case)
-    moved_apart = not values.get("DA") and not values.get("DB")
+    # of point masses the arms say nothing
+    moved_apart = values.get("M") == 4 or not (values.get("DA") or values.get("DB"))
     bodies = {}
     for name in "AB":
         bodies[name] = _body(name, values, case, sizes[name], moved_apart)
     return Scene(values, bodies, normal, _impulse(values, bodies), moved_apart)
 
 
-def _base_values(case: Case, answer: Answer) -> dict[str, float]:
+def _base_values(answer: Answer) -> dict[str, float]:
     """Return what is known of the impact, given or computed, in base units."""
+    case = answer.case
     values = {name: amount.value for name, amount in {**case.entries, **case.sizes}.items()}
-    values |= case.numbers
-    for name, value in answer.found.items():
-        factor, offset = case.view.map(name)
-        values[name] = float(offset) + float(factor) * float(value)
+    values |= {**case.numbers, **{name: float(x) for name, x in answer.scene.items()}}
     for speed, (x, y, course) in VECTORS.items():
         if not {x, y} <= {*values} and speed in values and (course in values or not values[speed]):
             velocity = values[speed] * _unit(values.get(course, 0.0))
@@ -326,15 +353,15 @@ def _impulse(values: Mapping[str, float], bodies: Mapping[str, Body]) -> complex
 class _Sheet:
     """The paper: its scale, what is drawn on it, and labels still to be placed."""
 
-    def __init__(self, scene: Scene, case: Case) -> None:
-        self.scene, self.view = scene, case.view
+    def __init__(self, scene: Scene, numbers: _Numbers) -> None:
+        self.scene, self.numbers, self.view = scene, numbers, numbers.view
         self.parts: list[str] = []
         self.labels: list[Label] = []
         self.arrows: list[np.ndarray] = []
         self._ink: list[np.ndarray] = []
         self._weights: list[np.ndarray] = []
         # north, which is x of SAE axes, is up
-        north_is_x = case.view.headings == "compass" and case.view.axes == "sae"
+        north_is_x = self.view.headings == "compass" and self.view.axes == "sae"
         self.turn = 1j if north_is_x else 1 + 0j
         drawn = [body for body in scene.bodies.values() if body.kind != "wall"]
         self.drawn = drawn or list(scene.bodies.values())
@@ -485,12 +512,13 @@ class _Sheet:
         for body in self.drawn:
             colour = COLOURS[body.name]
             for kind, plane_ends in self._velocities(body).items():
-                symbol, width, dash = ARROWS[kind]
+                symbol, name, width, dash = ARROWS[kind]
                 start, end = (self.at(point) for point in plane_ends)
                 ends = self.arrow(start, end, colour, width, dash)
                 if ends:
                     value = abs(plane_ends[1] - plane_ends[0]) / self.per_speed
-                    text = f"{symbol}_{body.name.lower()} {_number(self.view, 'SA', value, False)}"
+                    size = self.numbers.text(name.format(body.name), value)
+                    text = f"{symbol}_{body.name.lower()} {size}"
                     at = ends[0] if kind == "before" else ends[1]
                     self.labels.append(Label(at, 2 * at - sum(ends), text, colour))
             self._draw_spins(body, colour)
@@ -500,9 +528,7 @@ class _Sheet:
         """Draw a body's spins as arcs around its center, behind it as seen from the contact."""
         center = self.at(body.center)
         behind = self.along(body.center or -body.front)
-        for spin, symbol, radius, dash in zip(
-            body.spins, ("ω", "Ω"), (17.0, 24.0), ("5 3", ""), strict=True
-        ):
+        for spin, (symbol, name, radius, dash) in zip(body.spins, SPINS, strict=True):
             if spin is None or abs(spin) * self.size <= TINY_SPIN * self.speed:
                 continue
             sense = -1j if spin > 0 else 1j  # counterclockwise on paper, whose y is downwards
@@ -511,8 +537,8 @@ class _Sheet:
             points = [center + p for p in arc]
             self.line(points, colour, 1.6, dash=dash)
             self.head(points[-1] + 2 * sense * arc[-1] / radius, sense * arc[-1], colour, 7)
-            name = "WA" if symbol == "ω" else "WAF"
-            text = f"{symbol}_{body.name.lower()} {_number(self.view, name, spin, False)}"
+            size = self.numbers.text(name.format(body.name), spin)
+            text = f"{symbol}_{body.name.lower()} {size}"
             self.labels.append(Label(center + middle, middle, text, colour))
 
     def _ring(self, center: complex, radius: float, colour: str) -> None:
@@ -521,13 +547,15 @@ class _Sheet:
             f'<circle cx="{center.real:.1f}" cy="{center.imag:.1f}" r="{radius:g}" fill="#fff" '
             f'stroke="{colour}" stroke-width="1.4"/>'
         )
+        ink = center + radius * np.exp(1j * np.arange(0, math.tau, 0.5))
+        self._ink.append(ink)
+        self._weights.append(np.ones(len(ink)))
 
     def draw_impulse(self) -> None:
         """Draw the impulse on each body, and the contact point."""
         contact = self.at(0j)
         for body in self.drawn if self.scene.impulse else ():
-            impulse = self.scene.impulse or 0j
-            force = impulse if body.name == "A" else -impulse
+            force = self.scene.force_on(body.name)
             symbol, width = ("P", 3.4) if body.name == "A" else ("−P", 1.8)
             end = contact + self.along(FORCE_REACH * self.size * force / abs(force))
             ends = self.arrow(contact, end, COLOURS["P"], width)
@@ -581,9 +609,9 @@ class _Sheet:
             entries.append((2.4, "", "#000", 0.0, f"V: velocity after{speed}"))
             entries.append((1.4, "1.5 2.5", "#000", 0.0, f"ΔV: velocity change{speed}"))
         if scene.impulse:
-            size = _number(self.view, "PN", abs(scene.impulse))
-            entries.append((3.4, "", COLOURS["P"], 0.0, f"P: impulse on A, {size}"))
-        angle = _number(self.view, "GA", scene.values["GA"], False)
+            size = self.numbers.text("P", abs(scene.impulse), True)
+            entries.append((3.4, "", COLOURS["P"], 0.0, f"P: impulse, {size} on A"))
+        angle = f"{self.view.shown('GA', scene.values['GA']):.4g}".replace("-", "−")
         entries.append((1.2, PLANE_DASH, "#000", 0.0, f"contact plane, Γ = {angle}°"))
         entries.append(self._scale("DA", self.size, self.scale))
         if self.speed:
@@ -629,13 +657,14 @@ class _Sheet:
         words = [f"Spins in {view.unit('WA') or 'radians per time'}, positive {sense}."]
         if compass:
             words.append("North is up.")
+        sizes: dict[str, list[str]] = {}
         for body in self.drawn:
-            if body.kind == "disc":
-                words.append(f"{body.name}: a point mass, drawn as a disc.")
-            else:
-                length, width = (_number(view, "DA", x) for x in (body.length, body.width))
-                words.append(f"{body.name} drawn {body.origin}, {length} by {width}.")
-        if self.scene.moved_apart:
+            length, width = (f"{view.shown('DA', x):.3g}" for x in (body.length, body.width))
+            size = f"drawn {body.origin}, {length} by {width} {view.unit('DA')}".rstrip()
+            words_of_body = "drawn as a disc: a point mass" if body.kind == "disc" else size
+            sizes.setdefault(words_of_body, []).append(body.name)
+        words += [f"{' and '.join(names)} {size}." for size, names in sizes.items()]
+        if self.scene.moved_apart and len(self.drawn) > 1:
             words.append("Moved apart along n to be seen.")
         if len(self.drawn) < 2:
             words.append("Hatched: a rigid barrier.")

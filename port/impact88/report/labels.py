@@ -22,7 +22,7 @@ LEADER_FROM = 15.0  # px; from this distance on a thin line leads to the point
 INK_STEP = 2.0  # px between the points that stand for a line
 GAP = 2.0  # px between two texts
 # cost of a label's place, in units of 6 px of distance
-COVERED_INK = 0.5
+COVERED_INK = 1.0
 TURNED_AWAY = 1.0
 FORBIDDEN = 1e4  # over another label, or outside the paper
 SUBSCRIPT_SIZE = 0.75  # as fractions of the size of type
@@ -54,8 +54,17 @@ class Box(NamedTuple):
 
 def text_width(text: str, size: float, bold: bool = False) -> float:
     """Return an upper estimate of a text's width in px, for the usual sans-serif typefaces."""
-    widths = (0.4 if c in NARROW else 0.95 if c in WIDE else 0.66 for c in text.replace("_", ""))
+    widths = [_character_width(c) for c in text.replace("_", "")]
     return size * sum(widths) * (1.1 if bold else 1.0)
+
+
+def _character_width(character: str) -> float:
+    """Return an upper estimate of a character's width, as a fraction of the size of type."""
+    if character in NARROW:
+        return 0.4
+    if character in WIDE:
+        return 0.95
+    return 0.72 if character.isupper() else 0.64
 
 
 def sampled(points: Sequence[complex]) -> Points:
