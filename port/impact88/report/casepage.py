@@ -1,0 +1,219 @@
+"""Pages for a case file: one HTML file each, to be printed and signed.
+
+A page loads nothing from elsewhere, holds no scripts, and is the same for the same input."""
+
+from __future__ import annotations
+
+import platform
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from ..errors import UserError, library, printable
+from ..files import replacing
+from ..version import full_version
+from .answers import Answer
+from .drawing import draw, to_png
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from .exhibits import Exhibit
+
+ENDINGS = (".html", ".svg", ".png")
+"""Endings of the files that `write` writes."""
+IMPACT = (
+    "Planar impact of two rigid bodies: impulse and momentum at the moment of contact, with "
+    "coefficients of restitution e, of friction μ and of moment restitution e_m (R. M. Brach, "
+    "Vehicle Collision Analysis, 1988, Equations 13 to 18), in double precision."
+)
+METHODS = {
+    "forward": (
+        IMPACT,
+        "The velocities after the impact follow in closed form from those before it.",
+    ),
+    "bounds": (
+        IMPACT,
+        "The velocities after the impact follow in closed form from those before it. Intervals "
+        "hold 90 % of random draws of the inputs within their tolerances.",
+    ),
+    "reconstruct": (
+        IMPACT,
+        "The equations hold exactly between the values. What is not given is found by least "
+        "squares (Levenberg and Marquardt) from random starts; values known within limits are "
+        "adjusted, weighted by their tolerances, and each is tested against the others (Baarda "
+        "1968). Intervals hold 90 % of the draws of a sequential Monte Carlo sampler.",
+    ),
+}
+"""Method of each question, in sentences."""
+NOT_JUDGED = (
+    "Motion before and after the impact, crush and injury: nothing of them is computed here, but "
+    "for skids written as such (v = √(2 μ g d), level road, one friction).",
+    "That the impact was planar, at one point, and that its bodies were rigid but for the contact.",
+    "The values given: they are taken from the case as they are.",
+)
+VERIFICATION_METHOD = (
+    "The inputs printed on a page are read and typed into R. M. Brach's program of 1988 again, run "
+    "bit for bit in the Apple II Plus's own arithmetic as checked against a real ROM. Each label "
+    "and number that was read is compared with what the program prints in its place.",
+    "An explanation is a change that makes the page agree, not a finding of what happened.",
+)
+VERIFICATION_NOT_JUDGED = (
+    "That a page is what the program prints does not prove that its inputs are those of the "
+    "collision, nor that the mechanics apply to it.",
+    "Errors that the page could not reveal are listed for each printout.",
+)
+
+
+@lru_cache(maxsize=1)
+def environment() -> Environment:
+    """Return the environment of the templates. Raises UserError if jinja2 is not installed."""
+    jinja2 = library("jinja2", "report", "a report")
+    templates: Environment = jinja2.Environment(
+        loader=jinja2.PackageLoader(__package__),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    templates.filters["css_text"] = _css_text
+    templates.filters["printable"] = lambda text: printable(str(text), "\n")
+    return templates
+
+
+def _css_text(text: str) -> str:
+    """Return a text for a string in a style sheet, without what could end it."""
+    return re.sub(r"[^\w .,:;/()-]", " ", text)
+
+
+def versions() -> str:
+    """Return the versions of what computes."""
+    import numpy
+
+    python = platform.python_version()
+    return f"impact88 {full_version()}, numpy {numpy.__version__}, Python {python}"
+
+
+def case_page(answer: Answer) -> str:
+    """Return the report on a case.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer to the case.
+
+    Returns
+    -------
+    str
+        An HTML page: question, answer, drawing; inputs with their sources, method, what is not
+        judged, examiner and date.
+
+    Raises
+    ------
+    UserError
+        If jinja2 is not installed.
+    """
+    case = answer.case
+    drawing, undrawn = "", ""
+    try:
+        drawing = draw(answer)
+    except UserError as error:
+        undrawn = str(error)
+    entries = [entry for entry in answer.given if entry.name != "M"]
+    exact = [e.name for e in entries if e.name in case.entries and not case.entries[e.name].varies]
+    return (
+        environment()
+        .get_template("case.html")
+        .render(
+            title=case.title or "Planar impact of two vehicles",
+            case=case,
+            examiner=case.examiner,
+            date=case.date,
+            paper="letter" if case.view.units in ("us", "chapter", "") else "a4",
+            answer=answer,
+            drawing=drawing,
+            undrawn=undrawn,
+            exact=exact,
+            unsourced=[entry.name for entry in entries if not entry.source],
+            method=METHODS[answer.asked],
+            not_judged=NOT_JUDGED,
+            versions=versions(),
+            digest=sha256(case.toml().encode()).hexdigest(),
+        )
+    )
+
+
+def verification_page(
+    exhibits: Sequence[Exhibit],
+    *,
+    title: str = "Verification of printouts",
+    number: str = "",
+    examiner: str = "",
+    date: str = "",
+) -> str:
+    """Return the report on verified printouts.
+
+    Parameters
+    ----------
+    exhibits : sequence of Exhibit
+        The printouts.
+    title, number, examiner, date : str, optional
+        Headings: number of the case, and who signs.
+
+    Returns
+    -------
+    str
+        An HTML page: for each printout its verdict, the findings marked in its text and its
+        picture, what was examined, and what it could not reveal.
+
+    Raises
+    ------
+    UserError
+        If jinja2 is not installed.
+    """
+    return (
+        environment()
+        .get_template("verification.html")
+        .render(
+            title=title,
+            case={"case": number},
+            examiner=examiner,
+            date=date,
+            paper="letter",
+            exhibits=exhibits,
+            method=VERIFICATION_METHOD,
+            not_judged=VERIFICATION_NOT_JUDGED,
+            versions=versions(),
+        )
+    )
+
+
+def write(answer: Answer, path: str) -> None:
+    """Write the report or the drawing of a case; the format is the ending of the file's name.
+
+    Parameters
+    ----------
+    answer : Answer
+        The answer to the case.
+    path : str
+        A name in .html, .svg or .png.
+
+    Raises
+    ------
+    UserError
+        For another ending, a case that cannot be drawn, a missing library, and a place that cannot
+        be written to.
+    """
+    ending = PurePath(path).suffix.lower()
+    if ending not in ENDINGS:
+        raise UserError(f"expected a name in {', '.join(ENDINGS)}", path)
+    if ending == ".html":
+        data = case_page(answer).encode()
+    else:
+        svg = draw(answer, titled=True)
+        data = to_png(svg) if ending == ".png" else svg.encode()
+    with replacing(path, "wb") as file:
+        file.write(data)

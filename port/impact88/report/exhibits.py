@@ -1,0 +1,158 @@
+"""Verified printouts as pages show them: text and picture with what was marked on each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+DIFFERS, DOUBT, FOREIGN = "differs", "doubt", "foreign"
+"""Looks of marks: another number or word, one not read exactly, text that is not the program's."""
+
+
+class Mark(NamedTuple):
+    """A marked place of a text: where, how it looks, and a note."""
+
+    start: int
+    stop: int
+    look: str
+    note: str
+
+
+class Outline(NamedTuple):
+    """A marked place of a picture: corners as an SVG polygon has them, look, and a note."""
+
+    points: str
+    look: str
+    note: str
+
+
+class Picture(NamedTuple):
+    """The picture of a page: data URI, size in px, marked places."""
+
+    uri: str
+    width: int
+    height: int
+    outlines: tuple[Outline, ...]
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """A verified printout as a page shows it.
+
+    Parameters
+    ----------
+    source : str
+        Its file, and which printout of the file it is.
+    verdict, meaning : str
+        The verdict, and the sentence that explains it.
+    is_adverse : bool
+        True if the page differs.
+    sections : mapping of str to tuple of str
+        Sentences by heading, on what was read and compared, findings, explanations, and errors that
+        the page could not reveal; those with the empty heading first.
+    text : str
+        The text, as given or as read from the picture.
+    marks : tuple of Mark
+        Marked places of the text, in order, apart from each other.
+    picture : Picture or None
+        The page, if it was read from a picture.
+    digest : str
+        SHA-256 of the file.
+    """
+
+    source: str
+    verdict: str
+    meaning: str
+    is_adverse: bool
+    sections: dict[str, tuple[str, ...]]
+    text: str
+    marks: tuple[Mark, ...] = ()
+    picture: Picture | None = field(default=None, repr=False)
+    digest: str = ""
+
+    def pieces(self) -> Iterator[tuple[str, str, str]]:
+        """Yield the text in pieces: text, look ("" if unmarked) and note."""
+        place = 0
+        for mark in self.marks:
+            if mark.start > place:
+                yield self.text[place : mark.start], "", ""
+            yield self.text[mark.start : mark.stop] or "‸", mark.look, mark.note
+            place = mark.stop
+        yield self.text[place:], "", ""
+
+
+def examine(name: str, data: bytes) -> list[Exhibit]:
+    """Verify every printout of a file.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file in messages.
+    data : bytes
+        A text, a PNG, JPEG or TIFF picture, or a PDF.
+
+    Returns
+    -------
+    list of Exhibit
+        One for each printout.
+
+    Raises
+    ------
+    UserError
+        For a file that cannot be read, and if no printout is found.
+    """
+    from ..errors import UserError
+    from ..printouts.reporting.examination import examine as examine_file
+
+    examined = examine_file(name, data=data)
+    if examined.error:
+        raise UserError(examined.error)
+    return [_of_old(result, name) for result in examined.results]
+
+
+def _of_old(result: Any, name: str) -> Exhibit:
+    """Return the exhibit of a verification by release 0.3's reader, which still reads pictures."""
+    from ..printouts.reporting.verification import MEANINGS, TITLES, sections, summary
+
+    text = result.text[result.start : result.stop] if result.stop else result.text
+    places = sorted(
+        (check.start - result.start, check.stop - result.start, check)
+        for check in result.fields
+        if check.same is False and check.start is not None
+    )
+    marks = tuple(
+        Mark(start, stop, DIFFERS, f"the program prints {check.recomputed}")
+        for start, stop, check in places
+    )
+    return Exhibit(
+        f"{name}, printout {result.number}",
+        TITLES[result.verdict],
+        MEANINGS[result.verdict],
+        result.verdict.name == "DIFFERS",
+        {"": tuple(summary(result)), **{h: tuple(s) for h, s in sections(result).items()}},
+        text,
+        marks,
+        _picture(result.exhibit()) if result.exhibit else None,
+        result.sha256 or "",
+    )
+
+
+def _picture(exhibit: dict[str, Any]) -> Picture:
+    """Return the picture of a page with its cells in question and foreign ink outlined."""
+    looks = {"differs": DIFFERS, "foreign": DIFFERS}
+    outlines = [
+        (cell["corners"], looks.get(cell["state"], DOUBT), f"{cell['name']}: {cell['predicted']}")
+        for cell in exhibit["cells"]
+        if cell["state"] != "holds"
+    ]
+    outlines += [(mark["corners"], FOREIGN, str(mark["kind"])) for mark in exhibit["marks"]]
+    return Picture(
+        exhibit["page"],
+        exhibit["width"],
+        exhibit["height"],
+        tuple(
+            Outline(" ".join(f"{x:.0f},{y:.0f}" for x, y in corners), look, note)
+            for corners, look, note in outlines
+        ),
+    )
