@@ -1,0 +1,56 @@
+"""Questions with a time limit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from queue import Empty, SimpleQueue
+from threading import BoundedSemaphore, Thread
+from typing import TypeVar
+
+from ..errors import UserError
+
+T = TypeVar("T")
+MAX_SECONDS = 20.0  # of a question; a reconstruction takes 3, a scanned page 2
+MAX_QUESTIONS = 4  # computed at a time, those given up included
+
+_places = BoundedSemaphore(MAX_QUESTIONS)
+
+
+def answer_in_time(compute: Callable[[], T], seconds: float = MAX_SECONDS) -> T:
+    """Return what a function returns.
+
+    Parameters
+    ----------
+    compute : callable
+        The function, without arguments.
+    seconds : float, default 20
+        Time limit.
+
+    Raises
+    ------
+    UserError
+        After the time limit, and if too many questions are being computed.
+    """
+    if not _places.acquire(timeout=seconds):
+        raise UserError("other questions are still being computed; try again later")
+    outcome: SimpleQueue[tuple[T | None, BaseException | None]] = SimpleQueue()
+
+    def work() -> None:
+        try:
+            outcome.put((compute(), None))
+        except BaseException as error:  # raised again where it was asked
+            outcome.put((None, error))
+        finally:
+            _places.release()
+
+    # a thread cannot be stopped: one that is given up ends by itself, or with the process
+    Thread(target=work, daemon=True).start()
+    try:
+        result, error = outcome.get(timeout=seconds)
+    except Empty:
+        raise UserError(
+            f"took longer than {seconds:g} s; the commands of impact88 have no time limit"
+        ) from None
+    if error is not None:
+        raise error
+    return result  # type: ignore[return-value]
