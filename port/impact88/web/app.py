@@ -45,7 +45,7 @@ CHOICES = {
     "units": {"us": "mph, lb, ft", "metric": "km/h, kg, m", "chapter": "ft/s, slug, ft"}
     | {"si": "m/s, kg, m", "": "none"},
     "axes": {"": "the chapter's", "sae": "SAE"},
-    "headings": {"": "counterclockwise from x", "compass": "compass"},
+    "headings": {"": "from the x axis", "compass": "compass"},
 }
 """Choices of how numbers are written, with their words."""
 HEADINGS = ("title", "case", "examiner", "date")
