@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from html import escape
 from typing import NamedTuple
@@ -18,11 +19,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..cases import Case
-from ..cases.motion import VECTORS
 from ..errors import UserError, library, printable
 from ..names import LENGTH, MASS, SPIN, VELOCITY, missing, quantity
 from .answers import Answer
-from .labels import Label, leader, place, sampled, text_element, text_width
+from .labels import Label, leader, place, sampled, text_element
 from .rounding import decimals_of, rounded
 
 COLOURS = {"A": "#0068a3", "B": "#bd4f00", "P": "#99356f"}
@@ -37,6 +37,7 @@ CLASSES = (
 )
 """Classes of vehicles: largest mass in kg, words, usual length and width in m."""
 PROPORTION = 2.6  # length over width of a vehicle of unknown class
+MAX_GYRATION = 1e12  # beyond, an inertia that stands for "no rotation" says nothing of the size
 DISC_DIAMETER = 0.6  # of a point mass, as a fraction of the length of its class
 WALL_RATIO = 1e4  # a body at rest so much heavier than the other is drawn as a barrier
 LARGEST = 1e100  # the largest number drawn: products of some must be doubles
@@ -45,11 +46,18 @@ WIDTH = 480.0  # px of the picture
 MARGIN = 46.0  # px around the shapes, for labels
 TALLEST = 360.0  # px of the shapes
 ROW = 17.0  # px between rows of the legend
+NOTE_CHARACTERS = 66  # in a line of notes
 LEGEND = 11.0  # px, size of its type
 SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of the longest body
 FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
 TINY_SPIN = 0.005  # of speed over length: a smaller spin is not drawn
 SIDESTEP = 6.0  # px by which an arrow moves off one that it would cover
+FRONT_MARKS = (
+    ((0.22, -0.38), (0.22, 0.38)),
+    ((-0.3, -0.36), (-0.3, 0.36)),
+    ((0.27, -0.2), (0.38, 0.0), (0.27, 0.2)),
+)
+"""Windscreen, rear window and arrowhead: fractions of length and width from the center."""
 PLANE_DASH = "9 3 2 3"
 ARROWS = {
     "before": ("v", "S{}", 1.6, "5 3"),
@@ -74,7 +82,7 @@ class Body(NamedTuple):
         Size of its outline.
     origin : str
         Where the size comes from, in words.
-    kind : {"vehicle", "disc", "wall"}
+    kind : {"vehicle", "disc", "barrier"}
         Shape drawn.
     faces : bool
         True if its front is given.
@@ -167,8 +175,7 @@ def draw(answer: Answer, *, titled: bool = False) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {top:g} {WIDTH:g} {bottom - top:.0f}" '
         'role="img" font-family="DejaVu Sans, Verdana, Arial, sans-serif">'
     )
-    words = f"<title>{escape(title)}</title><desc>{escape(_describe(scene, numbers))}</desc>"
-    return "\n".join([head + words, *sheet.parts, "</svg>"])
+    return "\n".join([f"{head}<title>{escape(title)}</title>", *sheet.parts, "</svg>"])
 
 
 def to_png(svg: str, width: int = 1440) -> bytes:
@@ -199,22 +206,7 @@ class _Numbers:
             decimals = self._decimals.get(quantity(name).unit, decimals_of([shown]))
             text = rounded(shown, decimals)
         unit = self.view.unit(name) if with_unit else ""
-        return f"{text} {unit}".rstrip().replace("-", "−", text.startswith("-"))
-
-
-def _describe(scene: Scene, numbers: _Numbers) -> str:
-    """Return a scene in words, for those who cannot see it."""
-    sentences = []
-    for name, body in scene.bodies.items():
-        words = f"{name}: {numbers.text(f'S{name}', abs(body.before), True)} before"
-        if body.after is not None:
-            after = numbers.text(f"S{name}F", abs(body.after), True)
-            change = numbers.text(f"DV{name}", abs(body.after - body.before), True)
-            words += f", {after} after, velocity change {change}"
-        if scene.impulse and body.faces:
-            words += f", force from {body.clock(scene.force_on(name))}"
-        sentences.append(f"{words}.")
-    return f"The scene from above. {' '.join(sentences)}"
+        return f"{text} {unit}".rstrip()
 
 
 def _unit(degrees: float) -> complex:
@@ -244,10 +236,6 @@ def _base_values(answer: Answer) -> dict[str, float]:
     case = answer.case
     values = {name: amount.value for name, amount in {**case.entries, **case.sizes}.items()}
     values |= {**case.numbers, **{name: float(x) for name, x in answer.scene.items()}}
-    for speed, (x, y, course) in VECTORS.items():
-        if not {x, y} <= {*values} and speed in values and (course in values or not values[speed]):
-            velocity = values[speed] * _unit(values.get(course, 0.0))
-            values |= {x: velocity.real, y: velocity.imag}
     return {name: value for name, value in values.items() if not math.isnan(value)}
 
 
@@ -266,12 +254,23 @@ def _sizes(values: Mapping[str, float], case: Case) -> dict[str, tuple[float, fl
     return result
 
 
+def _kind(name: str, values: Mapping[str, float]) -> str:
+    """Return the shape in which a body is drawn."""
+    other, speeds = ("B", "UX UY WA") if name == "A" else ("A", "VX VY WB")
+    is_heavy = values.get(f"M{name}", 1.0) >= WALL_RATIO * values.get(f"M{other}", 1.0)
+    if is_heavy and not any(values.get(speed) for speed in speeds.split()):
+        return "barrier"
+    return "disc" if values.get("M") == 4 else "vehicle"
+
+
 def _usual_size(
     name: str, values: Mapping[str, float], case: Case
 ) -> tuple[float, float, str] | None:
     """Return the size of a body as given, by its class of weight, or by its inertia."""
     if f"L{name}" in values and f"B{name}" in values:
         return values[f"L{name}"], values[f"B{name}"], "as measured"
+    if _kind(name, values) == "barrier":
+        return None
     mass, inertia = values.get(f"M{name}", math.nan), values.get(f"I{name}", math.nan)
     if case.view.units and 0 < mass < math.inf:
         kilograms = mass * float(case.view.base_size(MASS))
@@ -280,11 +279,9 @@ def _usual_size(
         return length * meter, width * meter, f"as {words} of its weight"
     square = 12 * inertia / mass if mass else math.nan
     distance = values.get(f"D{name}", 0.0)
-    if 0 < square < 1e12 * max(1.0, distance**2):
+    if 0 < square < MAX_GYRATION * max(1.0, distance**2):
         length = math.sqrt(square / (1 + PROPORTION**-2))
         return length, length / PROPORTION, "by its inertia"
-    if distance:
-        return 2.4 * abs(distance), 2.4 * abs(distance) / PROPORTION, "by its contact point"
     return None
 
 
@@ -307,22 +304,21 @@ def _body(
     else:
         front = -side * _unit(theta)
     length, width, origin = size
-    masses = [abs(values.get(f"M{which}", 1.0)) for which in (name, "B" if name == "A" else "A")]
-    kind = "disc" if values.get("M") == 4 else "vehicle"
-    if masses[0] >= WALL_RATIO * masses[1] and not before and not values.get(f"W{name}"):
-        kind = "wall"
+    kind = _kind(name, values)
     if kind == "disc":
         length = width = DISC_DIAMETER * length
-    if moved_apart:
+    if kind == "barrier":
+        front, length, width = inward, 0.15 * length, 1.5 * length
+    if moved_apart or kind == "barrier":
         turned = front / inward
         half = abs(turned.real) * length + abs(turned.imag) * width
         center = inward * (length if kind == "disc" else half) / 2
     else:
         angle = values.get(f"T{name}", 0.0) + values.get(f"P{name}", 0.0)
         center = side * values.get(f"D{name}", 0.0) * _unit(angle)
-    faces = theta is not None and f"T{name}" not in case.omitted
+    faces = theta is not None and f"T{name}" not in case.omitted and kind != "barrier"
     spins = (values.get(f"W{name}"), values.get(f"W{name}F"))
-    if kind == "disc":
+    if kind != "vehicle":
         spins = (None, None)
     return Body(
         name,
@@ -340,14 +336,12 @@ def _body(
 
 
 def _impulse(values: Mapping[str, float], bodies: Mapping[str, Body]) -> complex | None:
-    """Return the impulse on A: along n and t as computed, else as momentum gained by a body."""
-    if "PN" in values and "PT" in values:
-        return complex(values["PN"], values["PT"]) * _unit(values["GA"]) or None
-    for name, sense in (("A", 1), ("B", -1)):
-        body = bodies[name]
-        if body.kind != "wall" and body.after is not None and f"M{name}" in values:
-            return sense * values[f"M{name}"] * (body.after - body.before) or None
-    return None
+    """Return the impulse on A, which is the momentum that a body gains; None without one."""
+    name, sense = ("B", -1) if bodies["A"].kind == "barrier" else ("A", 1)
+    body = bodies[name]
+    if body.after is None:
+        return None
+    return sense * values.get(f"M{name}", 1.0) * (body.after - body.before) or None
 
 
 class _Sheet:
@@ -363,10 +357,11 @@ class _Sheet:
         # north, which is x of SAE axes, is up
         north_is_x = self.view.headings == "compass" and self.view.axes == "sae"
         self.turn = 1j if north_is_x else 1 + 0j
-        drawn = [body for body in scene.bodies.values() if body.kind != "wall"]
-        self.drawn = drawn or list(scene.bodies.values())
-        self.size = max(body.length for body in self.drawn)
-        speeds = [abs(v) for body in self.drawn for v in (body.before, body.after) if v is not None]
+        self.bodies = list(scene.bodies.values())
+        self.size = max(body.length for body in self.bodies)
+        speeds = [
+            abs(v) for body in self.bodies for v in (body.before, body.after) if v is not None
+        ]
         self.speed = max(speeds)
         self.per_speed = SPEED_REACH * self.size / self.speed if self.speed else 0.0
         self.half_plane = 0.62 * self.size * 1j * scene.normal
@@ -378,11 +373,9 @@ class _Sheet:
         if self.scene.impulse:
             force = FORCE_REACH * self.size * self.scene.impulse / abs(self.scene.impulse)
             points += [force, -force]
-        for body in self.drawn:
+        for body in self.bodies:
             points += body.outline
             points += [end for ends in self._velocities(body).values() for end in ends]
-        if len(self.drawn) < 2:
-            points += self._wall_face()
         turned = [point * self.turn for point in points]
         xs, ys = [p.real for p in turned], [p.imag for p in turned]
         width, height = max(xs) - min(xs), max(ys) - min(ys)
@@ -448,42 +441,18 @@ class _Sheet:
 
     def draw_bodies(self) -> None:
         """Draw the outlines and the marks that show the fronts."""
-        for body in self.scene.bodies.values():
+        for body in self.bodies:
             colour = COLOURS[body.name]
-            if body.kind == "wall" and len(self.drawn) < 2:
-                self._draw_wall(colour)
-                continue
             outline = [self.at(point) for point in body.outline]
             self.line(outline, colour, 1.5, fill=colour, closed=True, weight=0.3)
             if body.kind == "vehicle":
-                glass = [[(0.22, -0.38), (0.22, 0.38)], [(-0.3, -0.36), (-0.3, 0.36)]]
-                nose = [(0.27, -0.2), (0.38, 0.0), (0.27, 0.2)]
-                for marks in (*glass, nose):
-                    points = [self.at(body.at(*mark)) for mark in marks]
+                for mark in FRONT_MARKS:
+                    points = [self.at(body.at(*place)) for place in mark]
                     self.line(points, colour, 1.0, weight=0.3)
             away = body.center or body.front
             self.labels.append(
                 Label(self.at(body.center), self.along(away), body.name, colour, 17, True)
             )
-
-    def _wall_face(self) -> list[complex]:
-        """Corners of a barrier behind the contact plane."""
-        body = next(b for b in self.scene.bodies.values() if b.kind == "wall")
-        depth = (1 if body.name == "A" else -1) * 0.14 * self.size * self.scene.normal
-        half = self.half_plane
-        return [half, -half, -half + depth, half + depth]
-
-    def _draw_wall(self, colour: str) -> None:
-        """Draw a barrier, hatched."""
-        corners = [self.at(point) for point in self._wall_face()]
-        self.line(corners, colour, 1.5, fill=colour, closed=True, weight=0.3)
-        for k in range(12):
-            low = corners[0] + (corners[1] - corners[0]) * (k + 0.3) / 12
-            high = corners[3] + (corners[2] - corners[3]) * (k + 0.9) / 12
-            self.line([low, high], colour, 0.8, weight=0.3)
-        name = next(b.name for b in self.scene.bodies.values() if b.kind == "wall")
-        middle = (corners[2] + corners[3]) / 2
-        self.labels.append(Label(middle, corners[2] - corners[1], name, colour, 17, True))
 
     def draw_plane(self) -> None:
         """Draw the contact plane, its normal and the contact point."""
@@ -501,7 +470,7 @@ class _Sheet:
         """Return the ends of a body's arrows: before the impact up to its center, else from it."""
         reach = self.per_speed
         arrows = {"before": (body.center - reach * body.before, body.center)}
-        if body.after is not None and body.kind != "wall":
+        if body.after is not None:
             arrows["after"] = (body.center, body.center + reach * body.after)
             change = reach * (body.after - body.before)
             arrows["change"] = (body.center, body.center + change)
@@ -509,7 +478,7 @@ class _Sheet:
 
     def draw_motion(self) -> None:
         """Draw velocities and spins."""
-        for body in self.drawn:
+        for body in self.bodies:
             colour = COLOURS[body.name]
             for kind, plane_ends in self._velocities(body).items():
                 symbol, name, width, dash = ARROWS[kind]
@@ -554,7 +523,7 @@ class _Sheet:
     def draw_impulse(self) -> None:
         """Draw the impulse on each body, and the contact point."""
         contact = self.at(0j)
-        for body in self.drawn if self.scene.impulse else ():
+        for body in self.bodies if self.scene.impulse else ():
             force = self.scene.force_on(body.name)
             symbol, width = ("P", 3.4) if body.name == "A" else ("−P", 1.8)
             end = contact + self.along(FORCE_REACH * self.size * force / abs(force))
@@ -605,7 +574,7 @@ class _Sheet:
         scene, unit = self.scene, self.view.unit("SA")
         speed = f", {unit}" if unit else ""
         entries = [(1.6, "5 3", "#000", 0.0, f"v: velocity before{speed}")]
-        if any(body.after is not None for body in self.drawn):
+        if any(body.after is not None for body in self.bodies):
             entries.append((2.4, "", "#000", 0.0, f"V: velocity after{speed}"))
             entries.append((1.4, "1.5 2.5", "#000", 0.0, f"ΔV: velocity change{speed}"))
         if scene.impulse:
@@ -632,43 +601,36 @@ class _Sheet:
 
     def _draw_axes(self, top: float) -> float:
         """Draw the axes of the case and write the notes beside them; return the lower edge."""
-        is_sae, compass = self.view.axes == "sae", self.view.headings == "compass"
-        axes = {"x": self.turn, "y": self.turn * (-1j if is_sae else 1j)}
-        xs = [a.conjugate() for a in axes.values()]
-        corner = complex(24, top + 12) - 22 * complex(
-            min(0, *(a.real for a in xs)), min(0, *(a.imag for a in xs))
-        )
-        for name, axis in axes.items():
-            tip = corner + 22 * axis.conjugate()
-            self.line([corner, tip], GREY, 1.0)
-            self.head(tip, tip - corner, GREY, 5)
-            at = tip + 8 * axis.conjugate() + 3j
-            self.parts.append(text_element(at, name, GREY, LEGEND))
-        notes = self._notes(is_sae, compass)
+        is_sae = self.view.axes == "sae"
+        y_is_down = is_sae and self.turn == 1
+        corner = complex(26, top + (6 if y_is_down else 36))
+        for name, axis in (("x", self.turn), ("y", self.turn * (-1j if is_sae else 1j))):
+            along = axis.conjugate()
+            self.line([corner, corner + 22 * along], GREY, 1.0)
+            self.head(corner + 24 * along, along, GREY, 5)
+            self.parts.append(text_element(corner + 32 * along + 3j, name, GREY, LEGEND))
+        notes = textwrap.wrap(self._notes(is_sae), NOTE_CHARACTERS)
         for k, text in enumerate(notes):
             at = complex(84, top + 8 + k * (ROW - 2))
             self.parts.append(text_element(at, text, GREY, LEGEND - 1, anchor="start"))
         return top + max(44, 8 + len(notes) * (ROW - 2))
 
-    def _notes(self, is_sae: bool, compass: bool) -> list[str]:
-        """Return the notes of the legend, in lines."""
-        view = self.view
-        sense = "clockwise" if is_sae else "counterclockwise"
+    def _notes(self, is_sae: bool) -> str:
+        """Return the notes of the legend."""
+        view, sense = self.view, "clockwise" if is_sae else "counterclockwise"
         words = [f"Spins in {view.unit('WA') or 'radians per time'}, positive {sense}."]
-        if compass:
+        if view.headings == "compass":
             words.append("North is up.")
         sizes: dict[str, list[str]] = {}
-        for body in self.drawn:
+        for body in self.bodies:
             length, width = (f"{view.shown('DA', x):.3g}" for x in (body.length, body.width))
-            size = f"drawn {body.origin}, {length} by {width} {view.unit('DA')}".rstrip()
-            words_of_body = "drawn as a disc: a point mass" if body.kind == "disc" else size
-            sizes.setdefault(words_of_body, []).append(body.name)
-        words += [f"{' and '.join(names)} {size}." for size, names in sizes.items()]
-        if self.scene.moved_apart and len(self.drawn) > 1:
+            look = f"{body.origin}, {length} by {width} {view.unit('DA')}".rstrip()
+            look = {"disc": "as point mass", "barrier": "as a barrier"}.get(body.kind, look)
+            sizes.setdefault(look, []).append(body.name)
+        words += [f"{' and '.join(names)} drawn {look}." for look, names in sizes.items()]
+        if self.scene.moved_apart:
             words.append("Moved apart along n to be seen.")
-        if len(self.drawn) < 2:
-            words.append("Hatched: a rigid barrier.")
-        return _wrapped(" ".join(words), WIDTH - 96, LEGEND - 1)
+        return " ".join(words)
 
 
 def _covers(points: np.ndarray, other: np.ndarray) -> bool:
@@ -676,15 +638,3 @@ def _covers(points: np.ndarray, other: np.ndarray) -> bool:
     distances = np.abs(points[:, None] - other)
     near = min(len(points), len(other)) / 3
     return bool((distances.min(axis=1) < SIDESTEP / 2).sum() > near)
-
-
-def _wrapped(text: str, width: float, size: float) -> list[str]:
-    """Return the words of a text in lines at most ``width`` px wide."""
-    lines = [""]
-    for word in text.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if text_width(longer, size) > width and lines[-1]:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines
