@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import os
 import traceback
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from flask import Flask, Request, Response, abort, redirect, render_template, request
@@ -82,7 +82,7 @@ def application(port: int, token: str, entry: str = "") -> Flask:
         place = request.path.removeprefix("/")
         is_entry = place in entries
         first = token if is_entry else request.path
-        status = refusal(request.headers, request.method, first, port=port, token=token)
+        status = refusal(dict(request.headers), request.method, first, port=port, token=token)
         if status:
             abort(status)
         if is_entry:
@@ -92,8 +92,10 @@ def application(port: int, token: str, entry: str = "") -> Flask:
 
     @app.after_request
     def protect(response: Response) -> Response:
-        for name, value in HEADERS.items():
-            response.headers.setdefault(name, value)
+        policy = response.headers.get("Content-Security-Policy")
+        response.headers.update(HEADERS)
+        if policy:
+            response.headers["Content-Security-Policy"] = policy
         return response
 
     app.register_error_handler(UserError, _problem)
@@ -168,7 +170,7 @@ def collision() -> str:
 
 
 def _fields(texts: Mapping[str, str], kind: str) -> dict[str, Any]:
-    """Return what the fields of a kind of collision show; entries without a field follow as text."""
+    """Return what the fields of a kind show; entries without a field follow as text."""
     kind = kind if kind in KINDS else "planar"
     values = KINDS[kind].entries | dict(texts)
     names = [n for n in KINDS[kind].entries if n in INPUTS]
@@ -282,7 +284,7 @@ def printed() -> str:
 
 
 PAGES = {"": printout, "collision": collision, "1988": program}
-VIEWS = PAGES | {
+VIEWS: dict[str, Callable[[], Any]] = PAGES | {
     "verify": verify,
     "verification": verification,
     "fields": fields,

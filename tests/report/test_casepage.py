@@ -1,0 +1,123 @@
+"""Pages for a case file: what they hold, and that they are self-contained."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from drawnscenes import case_of
+
+import impact88
+from impact88 import UserError
+from impact88.report.answers import ask
+from impact88.report.casepage import case_page, verification_page, write
+from impact88.report.exhibits import DIFFERS, Exhibit, Mark, Outline, Picture, examine
+
+pytest.importorskip("jinja2")
+HOSTILE = '"><script>alert(1)</script>\x1b[2J'
+
+
+def text_of(page: str) -> str:
+    """Return the text of a page, with one blank for each tag."""
+    body = page[page.index("<body>") :]
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", body))
+
+
+@pytest.mark.parametrize("name", ["side", "sae", "points", "no units"])
+def test_numbers_are_the_answers_own_texts(name: str) -> None:
+    answer = ask(case_of(name))
+    rows = re.findall(r"<tr>(.*?)</tr>", case_page(answer))
+    cells = [re.findall(r"<td[^>]*>(?:<b>)?([^<]*)", row)[:3] for row in rows]
+    numbers = [[n.name, n.text, n.unit] for n in answer.found.values()]
+    assert cells[1 : 1 + len(numbers)] == numbers
+
+
+def test_a_case_page_is_complete() -> None:
+    case = case_of(
+        "oblique",
+        title="Oblique impact",
+        case="26-117",
+        examiner="J. Doe",
+        date="2026-11-28",
+        UX_source="event data recorder",
+    )
+    page = case_page(ask(case))
+    text = text_of(page)
+    for words in (
+        "Oblique impact",
+        "Case 26-117",
+        "Examiner: J. Doe",
+        "Velocities after the impact",
+        "event data recorder",
+        "Equations 13 to 18",
+        "Not judged",
+        "IA = 1978 lb-ft-s2 is estimated",
+        "Signature",
+        "SHA-256",
+    ):
+        assert words in text
+    assert page.count("<svg ") == 1
+    assert page == case_page(ask(case))
+
+
+def test_a_page_loads_nothing_and_escapes_what_it_is_given() -> None:
+    case = case_of(title=HOSTILE, case=HOSTILE, examiner=HOSTILE, date=HOSTILE, MA_source=HOSTILE)
+    page = case_page(ask(case)) + verification_page(
+        [Exhibit(HOSTILE, "DIFFERS", HOSTILE, True, {HOSTILE: (HOSTILE,)}, HOSTILE)],
+        number=HOSTILE,
+        examiner=HOSTILE,
+    )
+    assert "<script" not in page
+    assert "\x1b" not in page
+    assert not re.search(r"(?:src|href)=(?!\"(?:data:|#))|url\(|@import", page)
+
+
+def test_what_cannot_be_drawn_is_said() -> None:
+    page = case_page(ask(case_of("points", UX="1e101")))
+    assert "Not drawn: UX = 1" in page
+
+
+def test_findings_are_marked_in_the_text() -> None:
+    page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")
+    (exhibit,) = examine("paper.txt", page.encode())
+    assert exhibit.verdict == "DIFFERS"
+    assert "".join(text for text, _, _ in exhibit.pieces()) == exhibit.text
+    html = verification_page([exhibit], examiner="J. Doe")
+    assert re.search(r'<mark class="differs" title="[^"]*-13.263[^"]*">-13.268</mark>', html)
+    assert "paper.txt, printout 1" in html
+    assert exhibit.digest in html
+
+
+def test_findings_are_marked_on_the_picture() -> None:
+    outline = Outline("1,1 9,1 9,9 1,9", DIFFERS, "VAX: 3")
+    picture = Picture("data:image/png;base64,AAAA", 100, 50, (outline,))
+    marks = (Mark(4, 5, DIFFERS, "the program prints 3"), Mark(6, 6, "doubt", "lost"))
+    exhibit = Exhibit("scan.png", "DIFFERS", "another", True, {}, "VAX=8 ", marks, picture)
+    html = verification_page([exhibit])
+    assert '<image href="data:image/png;base64,AAAA" width="100" height="50"/>' in html
+    assert '<polygon class="differs" points="1,1 9,1 9,9 1,9"><title>VAX: 3</title>' in html
+    assert 'VAX=<mark class="differs" title="the program prints 3">8</mark> ' in html
+    assert '<mark class="doubt" title="lost">‸</mark>' in html
+
+
+def test_what_is_no_printout_is_one_line() -> None:
+    with pytest.raises(UserError, match=r"letter\.txt") as error:
+        examine("letter.txt", b"Dear Sir,\n\nplease find enclosed\n")
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "start"), [("a.html", b"<!doctype"), ("a.svg", b"<svg "), ("a.png", b"\x89PNG")]
+)
+def test_the_ending_decides_what_is_written(name: str, start: bytes, tmp_path: Path) -> None:
+    write(ask(case_of()), str(tmp_path / name))
+    assert (tmp_path / name).read_bytes().startswith(start)
+
+
+def test_nothing_is_written_of_what_cannot_be_drawn(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"expected a name in \.html, \.svg, \.png"):
+        write(ask(case_of()), str(tmp_path / "a.pdf"))
+    with pytest.raises(UserError, match="too large"):
+        write(ask(case_of("points", UX="1e101")), str(tmp_path / "a.svg"))
+    assert list(tmp_path.iterdir()) == []

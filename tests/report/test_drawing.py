@@ -1,0 +1,141 @@
+"""The scene from above: nothing overlaps, shapes and directions are the scene's."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+from xml.etree import ElementTree
+
+import pytest
+from drawnscenes import SCENES, case_of, texts_of
+
+from impact88 import UserError
+from impact88.report.answers import Answer, ask
+from impact88.report.drawing import draw, to_png
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def drawing(name: str = "side", **changes: str) -> str:
+    """Return the drawing of a scene."""
+    return draw(ask(case_of(name, **changes)))
+
+
+def notes(name: str = "side", **changes: str) -> str:
+    """Return all texts of a scene's drawing."""
+    return " ".join(text.text for text in texts_of(drawing(name, **changes)))
+
+
+def paths(svg: str) -> list[str]:
+    """Return the outlines of all lines and heads of arrows."""
+    return re.findall(r'<path d="([^"]*)"', svg)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_no_text_covers_another_or_leaves_the_paper(name: str) -> None:
+    svg = drawing(name)
+    _, _, width, height = map(float, re.search(r'viewBox="([^"]*)"', svg)[1].split())
+    texts = texts_of(svg)
+    assert len(texts) > 10
+    assert [(a.text, b.text) for a, b in combinations(texts, 2) if a.overlaps(b)] == []
+    outside = [t for t in texts if t.left < 0 or t.right > width or t.top < 0 or t.bottom > height]
+    assert outside == []
+
+
+def test_the_picture_is_well_formed_and_holds_no_styles() -> None:
+    svg = drawing("oblique")
+    elements = {element.tag.removeprefix(SVG) for element in ElementTree.fromstring(svg).iter()}
+    assert elements == {"svg", "title", "path", "circle", "text", "tspan"}
+    assert "style" not in svg
+
+
+def test_numbers_are_the_answers_own_texts() -> None:
+    answer = ask(case_of())
+    texts = [text.text for text in texts_of(draw(answer))]
+    assert f"ΔVa {answer.found['DVA'].text}" in texts
+    assert f"Ωb {answer.found['WBF'].text}" in texts
+
+
+def test_the_same_scene_looks_the_same_in_other_axes() -> None:
+    """SAE axes mirror y and angles; the scene seen from above stays, y is shown downwards."""
+    names = ("PA", "PB", "GA", "TA", "TB", "UY", "VY", "WA", "WB")
+    plain = case_of("oblique")
+    mirrored = {name: f"{-float(plain.written[name]):g}" for name in names}
+    shapes, others = paths(drawing("oblique")), paths(drawing("oblique", axes="sae", **mirrored))
+    differing = [pair for pair in zip(shapes, others, strict=True) if pair[0] != pair[1]]
+    # the y axis with its head, and leaders of spins whose signs change
+    assert 2 <= len(differing) <= 8
+    assert len(shapes) > 25
+
+
+def test_north_is_up_in_compass_views() -> None:
+    """A drives north and B east: along y and x of the listing, along x and y of SAE axes."""
+    listing = drawing(UX="0", UY="25", TA="270", GA="270", VX="40", VY="0", TB="0")
+    north = {"UX": "25", "UY": "0", "TA": "0", "GA": "180", "VX": "0", "VY": "40", "TB": "90"}
+    compass = drawing(PB="40", axes="sae", headings="compass", **north)
+    assert "North is up." in compass
+    assert "North is up." not in listing
+    differing = set(paths(listing)) ^ set(paths(compass))
+    assert len(differing) <= 16  # contact plane by a rounding, leaders, axes
+    assert len(paths(listing)) > 25
+
+
+@pytest.mark.parametrize(
+    ("changes", "hours"),
+    [({}, ("12", "12")), ({"PA": "30", "TA": "-30"}, ("11", "12")), ({"VX": "-60"}, ("6", "6"))],
+)
+def test_the_impulse_has_the_hour_from_which_it_comes(
+    changes: dict[str, str], hours: tuple[str, str]
+) -> None:
+    """A frontal blow comes from 12 o'clock; A turned left by 30 degrees is struck from 11."""
+    svg = drawing("head-on", MU="0", **changes)
+    texts = [text.text for text in texts_of(svg)]
+    assert f"P {hours[0]} o'clock" in texts
+    assert f"−P {hours[1]} o'clock" in texts
+
+
+@pytest.mark.parametrize(
+    ("mass", "words"),
+    [("450", "a motorcycle"), ("451", "a car"), ("2500", "a car"), ("2501", "a light truck")],
+)
+def test_bodies_are_drawn_by_class_of_weight(mass: str, words: str) -> None:
+    assert f"A drawn as {words} of its weight" in notes(
+        "metric", MA=mass, IA="3000", IB="1e4", MB="9000"
+    )
+
+
+def test_measured_sizes_are_used() -> None:
+    assert "A drawn as measured, 16 by 6.5 ft." in notes(LA="16 ft", BA="6.5 ft")
+
+
+def test_a_body_at_rest_is_a_barrier_from_a_ratio_of_masses_on() -> None:
+    heavy, light = 10_000 * 3091, 9_990 * 3091
+    assert "B drawn as a barrier" in drawing("barrier", MB=str(heavy))
+    assert "B drawn as a barrier" not in drawing("barrier", MB=str(light))
+    assert "B drawn as a barrier" not in drawing("barrier", VY="1")
+
+
+def test_spins_are_drawn_from_a_rate_on_that_can_be_seen() -> None:
+    texts = [t.text for t in texts_of(drawing(WA="0.012"))] + ["|"]
+    assert not any(text.startswith("ωa") for text in texts)
+    assert any(t.text.startswith("ωa") for t in texts_of(drawing(WA="0.03")))
+
+
+def test_what_cannot_be_drawn_is_named() -> None:
+    with pytest.raises(UserError, match=r"UX = 1.*e.101 is too large"):
+        drawing("points", UX="1e101")
+    unknown_plane = Answer("reconstruct", "", (), {}, case_of("points", GA=""))
+    with pytest.raises(UserError, match=r"GA .*the drawing shows"):
+        draw(unknown_plane)
+
+
+def test_a_title_is_escaped() -> None:
+    svg = draw(ask(case_of(title="</title><script>\x1b")), titled=True)
+    assert "<script" not in svg
+    assert "\x1b" not in svg
+    assert "&lt;script&gt;" in svg
+
+
+def test_a_png_is_rendered() -> None:
+    pytest.importorskip("resvg_py")
+    assert to_png(drawing(), 300).startswith(b"\x89PNG")
