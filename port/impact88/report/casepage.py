@@ -97,6 +97,14 @@ def versions() -> str:
     return f"impact88 {full_version()}, numpy {numpy.__version__}, Python {python}"
 
 
+def drawing_of(answer: Answer) -> tuple[str, str]:
+    """Return the drawing of an answer, or why there is none."""
+    try:
+        return draw(answer), ""
+    except UserError as error:
+        return "", str(error)
+
+
 def case_page(answer: Answer) -> str:
     """Return the report on a case.
 
@@ -117,11 +125,7 @@ def case_page(answer: Answer) -> str:
         If jinja2 is not installed.
     """
     case = answer.case
-    drawing, undrawn = "", ""
-    try:
-        drawing = draw(answer)
-    except UserError as error:
-        undrawn = str(error)
+    drawing, undrawn = drawing_of(answer)
     entries = [entry for entry in answer.given if entry.name != "M"]
     exact = [e.name for e in entries if e.name in case.entries and not case.entries[e.name].varies]
     return (

@@ -14,44 +14,26 @@ from typing import Any
 
 from flask import Flask, Request, Response, abort, redirect, render_template, request
 from jinja2 import ChoiceLoader
-from markupsafe import Markup
 from werkzeug.exceptions import HTTPException
 
-from ..cases import TEMPLATES, Case
+from ..cases import TEMPLATES, Case, View
 from ..cases.scenefile import ABOUT, INPUTS, read_toml
 from ..errors import UserError, printable
 from ..files import decode
-from ..names import SCENE
 from ..program.run import run
 from ..program.scene import sample
-from ..report.answers import ask
-from ..report.casepage import case_page, environment, verification_page
-from ..report.drawing import draw
+from ..report.answers import Answer, ask
+from ..report.casepage import case_page, drawing_of, environment, verification_page
 from ..report.exhibits import Exhibit, examine
 from .guard import HEADERS, MAX_BODY, REPORT_POLICY, refusal
 from .questions import answer_in_time
 
 KINDS = {name: kind for name, kind in TEMPLATES.items() if kind.command == "solve"}
 """Kinds of collision that the page has fields for."""
-GROUPS = (
-    ("Vehicle A", "MA IA DA PA TA LA BA".split()),
-    ("Vehicle B", "MB IB DB PB TB LB BB".split()),
-    ("Before the impact", "SA HA UX UY WA SB HB VX VY WB".split()),
-    ("After the impact", "SAF HAF VAX VAY WAF SBF HBF VBX VBY WBF".split()),
-    ("Contact", "GA E MU EM M".split()),
-)
-"""Order of the fields."""
-CHOICES = {
-    "units": {"us": "mph, lb, ft", "metric": "km/h, kg, m", "chapter": "ft/s, slug, ft"}
-    | {"si": "m/s, kg, m", "": "none"},
-    "axes": {"": "the chapter's", "sae": "SAE"},
-    "headings": {"": "from the x axis", "compass": "compass"},
-}
-"""Choices of how numbers are written, with their words."""
+DEFAULT_KIND = "planar"
 HEADINGS = ("title", "case", "examiner", "date")
-"""Entries for the report."""
-MORE = "more"
-"""Field for entries in the notation of a file."""
+"""Entries for a report."""
+VIEW = ("units", "axes", "headings")
 
 
 class MemoryRequest(Request):
@@ -68,47 +50,42 @@ def application(port: int, token: str, entry: str = "") -> Flask:
     """
     app = Flask(__name__, static_url_path=f"/{token}/static")
     app.request_class = MemoryRequest
-    app.config["MAX_CONTENT_LENGTH"] = MAX_BODY
-    app.config["MAX_FORM_MEMORY_SIZE"] = MAX_BODY
+    app.config.update(MAX_CONTENT_LENGTH=MAX_BODY, MAX_FORM_MEMORY_SIZE=MAX_BODY)
     reports = environment()
     app.jinja_options = {"trim_blocks": True, "lstrip_blocks": True}
     app.jinja_loader = ChoiceLoader([app.jinja_loader, reports.loader])  # type: ignore[list-item]
     app.jinja_env.filters.update(reports.filters)
-    app.jinja_env.globals["root"] = f"/{token}"
-    entries = {entry} - {""}
+    app.jinja_env.globals.update(root=f"/{token}", inputs=INPUTS, kinds=KINDS, headings=HEADINGS)
+    entries = {f"/{entry}"} - {"/"}
 
     @app.before_request
     def check() -> Response | None:
-        place = request.path.removeprefix("/")
-        is_entry = place in entries
-        first = token if is_entry else request.path
-        status = refusal(dict(request.headers), request.method, first, port=port, token=token)
+        is_entry = request.path in entries
+        path = f"/{token}/" if is_entry else request.path
+        status = refusal(dict(request.headers), request.method, path, port=port, token=token)
         if status:
             abort(status)
-        if is_entry:
-            entries.discard(place)
-            return redirect(f"/{token}/", 303)  # type: ignore[return-value]
-        return None
+        entries.discard(request.path)
+        return redirect(path, 303) if is_entry else None  # type: ignore[return-value]
 
     @app.after_request
     def protect(response: Response) -> Response:
-        policy = response.headers.get("Content-Security-Policy")
-        response.headers.update(HEADERS)
-        if policy:
-            response.headers["Content-Security-Policy"] = policy
+        policy = {n: t for n, t in response.headers if n == "Content-Security-Policy"}
+        response.headers.update(HEADERS | policy)
         return response
 
-    app.register_error_handler(UserError, _problem)
+    app.register_error_handler(UserError, lambda error: _problem(str(error), 422))
     app.register_error_handler(Exception, _internal_error)
-    for rule, view in VIEWS.items():
-        methods = ["GET"] if rule in PAGES else ["POST"]
-        app.add_url_rule(f"/{token}/{rule}", rule or "printout", view, methods=methods)
+    for name, view in PAGES.items():
+        app.add_url_rule(f"/{token}/{name}", name or "printout", view)
+    for name, view in FORMS.items():
+        app.add_url_rule(f"/{token}/{name}", name, view, methods=["POST"])
     return app
 
 
-def _problem(error: UserError) -> tuple[str, int]:
-    """Return the message on unusable input."""
-    return _page_or_part("problem.html", message=str(error)), 422
+def _problem(message: str, status: int) -> tuple[str, int]:
+    """Return the message on a problem."""
+    return _part("problem.html", message=message), status
 
 
 def _internal_error(error: Exception) -> Any:
@@ -118,16 +95,26 @@ def _internal_error(error: Exception) -> Any:
     if os.environ.get("IMPACT88_DEBUG") == "1":
         traceback.print_exception(error)
     step = traceback.extract_tb(error.__traceback__)[-1]
-    place = f"{os.path.basename(step.filename)}:{step.lineno}"
-    message = f"internal error; please report it: {type(error).__name__}: {error} at {place}"
-    return _page_or_part("problem.html", message=printable(message)), 500
+    message = f"{error!r} at {os.path.basename(step.filename)}:{step.lineno}"
+    return _problem(printable(f"internal error; please report it: {message}"), 500)
 
 
-def _page_or_part(part: str, page: str = "", **context: Any) -> str:
+def _part(name: str, page: str = "", **context: Any) -> str:
     """Return a part of a page to htmx, and a whole page to a browser without scripts."""
     if "HX-Request" in request.headers:
-        return render_template(part, **context)
-    return render_template("layout.html", part=part, page=page, **context)
+        return render_template(name, **context)
+    return render_template("layout.html", part=name, page=page, **context)
+
+
+def _report(page: str) -> Response:
+    """Return a report, which has a policy of its own."""
+    return Response(page, headers={"Content-Security-Policy": REPORT_POLICY})
+
+
+def _upload() -> tuple[str, bytes] | None:
+    """Return name and bytes of the file in a form, None without one."""
+    file = request.files.get("file")
+    return (printable(file.filename), file.read()) if file and file.filename else None
 
 
 def printout() -> str:
@@ -136,125 +123,103 @@ def printout() -> str:
 
 
 def _exhibits() -> list[Exhibit]:
-    """Return the verified printouts of the request. Raises UserError."""
-    file = request.files.get("file")
+    """Return the verified printouts of a form. Raises UserError."""
     text = request.form.get("text", "")
-    if file and file.filename:
-        name, data = printable(file.filename), file.read()
-    elif text.strip():
-        name, data = "pasted text", text.encode()
-    else:
+    name, data = _upload() or ("pasted text", text.encode())
+    if not data.strip():
         raise UserError("nothing to verify; expected a file, or the text of a printout")
     return answer_in_time(lambda: examine(name, data))
 
 
 def verify() -> str:
     """Return the verdicts on the printouts of a text, picture or PDF."""
-    return _page_or_part("verdicts.html", "printout", exhibits=_exhibits())
+    return _part("verdicts.html", "printout", exhibits=_exhibits())
 
 
 def verification() -> Response:
     """Return the report on the printouts."""
-    headings = {"number" if n == "case" else n: request.form.get(n, "") for n in HEADINGS[1:]}
-    return _report(verification_page(_exhibits(), **headings))
-
-
-def _report(page: str) -> Response:
-    """Return a report, which has a policy of its own."""
-    return Response(page, headers={"Content-Security-Policy": REPORT_POLICY})
+    number, examiner, date = (request.form.get(name, "") for name in HEADINGS[1:])
+    page = verification_page(_exhibits(), number=number, examiner=examiner, date=date)
+    return _report(page)
 
 
 def collision() -> str:
     """Return the page for collisions."""
-    return render_template("collision.html", page="collision", **_fields({"units": "us"}, "planar"))
+    return render_template("collision.html", page="collision", **_fields({"units": "us"}))
 
 
-def _fields(texts: Mapping[str, str], kind: str) -> dict[str, Any]:
+def _fields(texts: Mapping[str, str], kind: str = DEFAULT_KIND) -> dict[str, Any]:
     """Return what the fields of a kind show; entries without a field follow as text."""
-    kind = kind if kind in KINDS else "planar"
-    values = KINDS[kind].entries | dict(texts)
-    names = [n for n in KINDS[kind].entries if n in INPUTS]
-    groups = [(title, [n for n in members if n in names]) for title, members in GROUPS]
-    shown = {*names, *HEADINGS, *CHOICES}
-    more = "\n".join(f"{n} = {text}" for n, text in texts.items() if n not in shown)
-    view = Case.of({n: values[n] for n in CHOICES if values.get(n)}).view
+    kind = kind if kind in KINDS else DEFAULT_KIND
+    names = KINDS[kind].entries
+    more = [f"{n} = {x}" for n, x in texts.items() if n not in (*names, *HEADINGS, *VIEW)]
     return {
         "kind": kind,
-        "kinds": KINDS,
-        "choices": CHOICES,
-        "groups": [(title, members) for title, members in groups if members],
-        "values": values,
-        "more": more,
-        "meanings": {n: INPUTS[n].meaning for n in names},
-        "units": {n: view.unit(n) for n in names},
-        "headings": HEADINGS,
+        "names": names,
+        "values": names | dict(texts),
+        "more": "\n".join(more),
+        "view": View.of(**{name: texts.get(name) for name in VIEW}),
     }
 
 
 def _texts() -> dict[str, str]:
-    """Return the entries of the form. Raises UserError for a line without a name and a value."""
+    """Return the entries of a form. Raises UserError for a line without a name and a value."""
     form = request.form
     texts = {n: form[n].strip() for n in (*ABOUT, *INPUTS) if form.get(n, "").strip()}
-    for number, line in enumerate(form.get(MORE, "").splitlines(), 1):
+    for number, line in enumerate(form.get("more", "").splitlines(), 1):
         name, separator, text = (part.strip() for part in line.partition("="))
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        if not separator or not name:
+        if bool(name) != bool(separator):
             raise UserError(f"{line.strip()!r}; expected NAME = VALUE", f"more, line {number}")
-        texts[name] = text.strip("\"'")
+        texts |= {name: text.strip("\"'")} if name else {}
     return texts
-
-
-def _case() -> Case:
-    """Return the case of the form. Raises UserError."""
-    return Case.of(_texts(), "the form")
 
 
 def fields() -> str:
     """Return the fields: of a file that was opened, else of another kind or unit."""
-    file = request.files.get("file")
-    if file and file.filename:
-        source = printable(file.filename)
-        texts, _ = read_toml(decode(file.read(), source), source)
+    upload = _upload()
+    if upload:
+        source, data = upload
+        texts, _ = read_toml(decode(data, source), source)
         Case.of(texts, source)
-        kind = _kind_of(texts)
+        # the kind that takes the most entries, and has the fewest others
+        kind = max(
+            KINDS, key=lambda k: (len({*texts} & {*KINDS[k].entries}), -len(KINDS[k].entries))
+        )
     else:
-        former = KINDS.get(request.form.get("was", ""), KINDS["planar"]).entries
+        former = KINDS.get(request.form.get("was", ""), KINDS[DEFAULT_KIND]).entries
         texts = {n: text for n, text in _texts().items() if text != former.get(n)}
-        kind = request.form.get("kind", "planar")
+        kind = request.form.get("kind", "")
     context = _fields(texts, kind)
     if "HX-Request" in request.headers:
         return render_template("fields.html", **context)
     return render_template("collision.html", page="collision", **context)
 
 
-def _kind_of(texts: Mapping[str, str]) -> str:
-    """Return the kind of collision whose fields take the most entries of a file, and no more."""
-    return max(KINDS, key=lambda k: (len(texts.keys() & KINDS[k].entries), -len(KINDS[k].entries)))
+def _case() -> Case:
+    """Return the case of a form. Raises UserError."""
+    return Case.of(_texts(), "the form")
+
+
+def _answer() -> Answer:
+    """Return the answer to a form. Raises UserError."""
+    case = _case()
+    return answer_in_time(lambda: ask(case))
 
 
 def answer() -> str:
-    """Return the answer to the form, with its drawing."""
-    case = _case()
-    result = answer_in_time(lambda: ask(case))
-    drawing, undrawn = Markup(), ""
-    try:
-        drawing = Markup(draw(result))
-    except UserError as error:
-        undrawn = str(error)
-    return _page_or_part(
-        "answer.html", "collision", answer=result, drawing=drawing, undrawn=undrawn
-    )
+    """Return the answer to a form, with its drawing."""
+    result = _answer()
+    drawing, undrawn = drawing_of(result)
+    return _part("answer.html", "collision", answer=result, drawing=drawing, undrawn=undrawn)
 
 
 def report() -> Response:
-    """Return the report on the form's case."""
-    case = _case()
-    return _report(case_page(answer_in_time(lambda: ask(case))))
+    """Return the report on a form's case."""
+    return _report(case_page(_answer()))
 
 
 def scene() -> Response:
-    """Return the form's case as a file."""
+    """Return a form's case as a file."""
     headers = {"Content-Disposition": 'attachment; filename="case.toml"'}
     return Response(_case().toml(), headers=headers, content_type="application/toml")
 
@@ -263,34 +228,27 @@ def program() -> str:
     """Return the page of the 1988 program."""
     number = request.args.get("sample", "")
     texts = dict(sample(int(number))) if number in ("1", "2", "3") else {}
-    return render_template("program.html", page="1988", texts=texts, **_program_context())
+    return render_template("program.html", page="1988", texts=texts)
 
 
-def _program_context() -> dict[str, Any]:
-    """Return the inputs of the program in its order, with their meanings."""
-    return {"inputs": {n: INPUTS[n].meaning for n in SCENE}}
-
-
-def printed() -> str:
-    """Return what the 1988 program prints for the form's case."""
+def printed_page() -> str:
+    """Return what the 1988 program prints for a form's case."""
     case = _case()
-    texts = case.texts
-    page = answer_in_time(lambda: run(texts).page)
+    context = {"printed": answer_in_time(lambda: run(case.texts).page), "case": case}
     if "HX-Request" in request.headers:
-        return render_template("printed.html", printed=page, case=case)
-    return render_template(
-        "program.html", page="1988", texts=texts, printed=page, case=case, **_program_context()
-    )
+        return render_template("printed.html", **context)
+    return render_template("program.html", page="1988", texts=case.texts, **context)
 
 
 PAGES = {"": printout, "collision": collision, "1988": program}
-VIEWS: dict[str, Callable[[], Any]] = PAGES | {
+"""Pages by their paths below the token."""
+FORMS: dict[str, Callable[[], Any]] = {
     "verify": verify,
     "verification": verification,
     "fields": fields,
     "answer": answer,
     "report": report,
     "scene": scene,
-    "printed": printed,
+    "printed": printed_page,
 }
-"""Views by their paths below the token."""
+"""Answers to forms, likewise."""
