@@ -20,6 +20,7 @@ DIRECTIONS = 24  # directions tried around a point
 REACHES = (3.0, 7.0, 12.0, 18.0, 26.0, 36.0, 50.0, 70.0, 95.0)  # distances tried, in px
 LEADER_FROM = 15.0  # px; from this distance on a thin line leads to the point
 INK_STEP = 2.0  # px between the points that stand for a line
+EDGE = 2.0  # px between a text and the edge of the paper
 GAP = 2.0  # px between two texts
 # cost of a label's place, in units of 6 px of distance
 COVERED_INK = 1.0
@@ -67,17 +68,21 @@ def _character_width(character: str) -> float:
     return 0.72 if character.isupper() else 0.64
 
 
-def sampled(points: Sequence[complex]) -> Points:
-    """Return points along a line, at most `INK_STEP` apart."""
+def path_of(points: Iterable[complex]) -> str:
+    """Return a line through points as the path of an SVG."""
+    return "M" + "L".join(f"{p.real:.1f} {p.imag:.1f}" for p in points)
+
+
+def sampled(points: Sequence[complex], step: float = INK_STEP) -> Points:
+    """Return points along a line, at most a step apart."""
     pieces = [
-        np.linspace(start, end, int(abs(end - start) / INK_STEP) + 2)
-        for start, end in pairwise(points)
+        np.linspace(start, end, int(abs(end - start) / step) + 2) for start, end in pairwise(points)
     ]
     return np.concatenate(pieces)
 
 
 def place(
-    labels: Iterable[Label], ink: Points, weights: NDArray[np.float64], paper: tuple[float, ...]
+    labels: Iterable[Label], ink: Points, width: float, height: float
 ) -> list[tuple[Label, Box]]:
     """Return each label with its place.
 
@@ -87,24 +92,18 @@ def place(
         The first one has the first choice.
     ink : ndarray of complex
         Points of all lines.
-    weights : ndarray of float
-        Importance of each point.
-    paper : tuple of float
-        Left, top, right and bottom edge.
+    width, height : float
+        Size of the paper, in px.
     """
     placed: list[tuple[Label, Box]] = []
     for label in labels:
-        box = _best_place(label, [box for _, box in placed], ink, weights, paper)
-        placed.append((label, box))
+        boxes = [box for _, box in placed]
+        placed.append((label, _best_place(label, boxes, ink, width, height)))
     return placed
 
 
 def _best_place(
-    label: Label,
-    boxes: Sequence[Box],
-    ink: Points,
-    weights: NDArray[np.float64],
-    paper: tuple[float, ...],
+    label: Label, boxes: Sequence[Box], ink: Points, width: float, height: float
 ) -> Box:
     """Return the cheapest place of a label among `REACHES` times `DIRECTIONS`."""
     half_width = text_width(label.text, label.size, label.bold) / 2
@@ -120,12 +119,10 @@ def _best_place(
     reaches = np.array(REACHES)[:, None]
     centers = (label.at + (reaches + support) * rays).ravel()
     cost = (reaches / 6 + TURNED_AWAY * (1 - np.cos(turns))).ravel()
-    inside = _overlap(centers, ink, half_width + 1, half_height + 1)
-    cost += COVERED_INK * (inside @ weights)
-    left, top, right, bottom = paper
-    outside = (centers.real - half_width < left) | (centers.real + half_width > right)
-    outside |= (centers.imag - half_height < top) | (centers.imag + half_height > bottom)
-    cost += FORBIDDEN * outside
+    cost += COVERED_INK * _overlap(centers, ink, half_width + 1, half_height + 1).sum(axis=1)
+    from_middle = centers - complex(width, height) / 2
+    cost += FORBIDDEN * (np.abs(from_middle.real) > width / 2 - EDGE - half_width)
+    cost += FORBIDDEN * (np.abs(from_middle.imag) > height / 2 - EDGE - half_height)
     for box in boxes:
         spread = half_width + box.half_width + GAP, half_height + box.half_height + GAP
         cost += FORBIDDEN * _overlap(centers, np.array([box.center]), *spread)[:, 0]
