@@ -316,8 +316,8 @@ class _Sheet:
             points += body.outline
             points += [end for ends in self._velocities(body).values() for end in ends]
         drawn = np.array(points) * self.turn
-        corners = [(xs.min(), xs.max()) for xs in (drawn.real, drawn.imag)]
-        (left, right), (bottom, top) = corners
+        left, right = float(drawn.real.min()), float(drawn.real.max())
+        bottom, top = float(drawn.imag.min()), float(drawn.imag.max())
         self.scale = min((WIDTH - 2 * MARGIN) / (right - left), TALLEST / (top - bottom))
         self.height = self.scale * (top - bottom) + 2 * MARGIN
         middle = complex(left + right, -bottom - top) / 2

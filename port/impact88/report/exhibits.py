@@ -4,8 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from hashlib import sha256
 from typing import Any, NamedTuple
 
+from ..errors import UserError
+from ..files import decode
+from ..printouts import VERDICTS, Finding, Kind, Verdict, Verification, judge
+
+PICTURE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"%PDF-")
+"""First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
+MEANINGS = {
+    Verdict.IDENTICAL: "every label and number is what the 1988 program prints for the inputs on "
+    "the page, and nothing else is between its first and last row",
+    Verdict.AS_READ: "what was read exactly is the 1988 program's; all other places are listed, to "
+    "be looked at on the paper",
+    Verdict.DIFFERS: "the text given differs from what the 1988 program prints for the inputs on "
+    "it; where a computer read it, look at the paper",
+    Verdict.INCOMPLETE: "numbers are missing or were not read beyond doubt, and the others do not "
+    "decide",
+}
+"""Sentence that explains each verdict."""
 DIFFERS, DOUBT, FOREIGN = "differs", "doubt", "foreign"
 """Looks of marks: another number or word, one not read exactly, text that is not the program's."""
 
@@ -102,7 +120,64 @@ def examine(name: str, data: bytes) -> list[Exhibit]:
     UserError
         For a file that cannot be read, and if no printout is found.
     """
-    from ..errors import UserError
+    digest = sha256(data).hexdigest()
+    if data.startswith(PICTURE_STARTS):
+        return _examine_picture(name, data)
+    results = judge(decode(data, name))
+    if not results:
+        raise UserError("no printout was found; expected a page that the 1988 program prints", name)
+    return [of_text(result, f"{name}, printout {k}", digest) for k, result in enumerate(results, 1)]
+
+
+def note_of(finding: Finding) -> str:
+    """Return what was found at a place, in words."""
+    read = f" {finding.read.strip()!r} read" if finding.read.strip() else ""
+    printed = f", {finding.printed.strip()!r} printed" if finding.printed.strip() else ""
+    return f"{finding.kind.value}:{read}{printed}".rstrip(":").replace(":,", ":")
+
+
+def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
+    """Return the exhibit of a verified text.
+
+    Parameters
+    ----------
+    result : Verification
+        The verification.
+    source : str
+        The file, and which printout of it.
+    digest : str, optional
+        SHA-256 of the file.
+    """
+    first, end = result.span
+    marks: list[Mark] = []
+    for finding in sorted(result.findings, key=lambda finding: finding.start):
+        start, stop = max(finding.start, first) - first, min(finding.stop, end) - first
+        if 0 <= start <= stop and (not marks or start >= marks[-1].stop):
+            is_adverse = VERDICTS[finding.kind] is Verdict.DIFFERS
+            look = DIFFERS if is_adverse else FOREIGN if finding.kind is Kind.FOREIGN else DOUBT
+            marks.append(Mark(start, stop, look, note_of(finding)))
+    return Exhibit(
+        source,
+        result.verdict.value.upper(),
+        MEANINGS[result.verdict],
+        result.verdict is Verdict.DIFFERS,
+        {
+            "findings": tuple(
+                f"line {result.line_of(f.start)}: {f.name} {note_of(f)}" for f in result.findings
+            ),
+            "explanation": (result.explanation,) if result.explanation else (),
+            "errors that this page could not reveal": tuple(
+                f"{name}: {count} digits" for name, count in result.unseen.items()
+            ),
+        },
+        result.text[first:end],
+        tuple(marks),
+        digest=digest,
+    )
+
+
+def _examine_picture(name: str, data: bytes) -> list[Exhibit]:
+    """Verify every printout of a picture, by release 0.3's reader."""
     from ..printouts.reporting.examination import examine as examine_file
 
     examined = examine_file(name, data=data)
