@@ -1,1 +1,1 @@
-"""Another program's results compared with the reference, and mistakes that explain them."""
+"""Reference results of scenes, and other programs' results compared with them."""

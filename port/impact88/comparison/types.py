@@ -1,52 +1,106 @@
-"""The result of comparing another program's table with the reference."""
+"""What a comparison returns."""
 
-from __future__ import annotations
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
-from dataclasses import dataclass
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Cause:
-    """A mistake of another program that reproduces its numbers.
+    """A mistake that gives the other program's numbers.
 
     Parameters
     ----------
     edit : str
-        The edit that a developer would undo: "IB = ..., should be IA, in the moment equation".
+        What the other program computes, and what it should.
     where : str
-        The condition under which rows disagree; "" for all rows.
-    rows : int
-        Disagreeing rows that the cause reproduces.
-    of : int
-        Disagreeing rows.
-    unexplained : tuple of str
-        Columns that still disagree.
+        The condition on the scene under which it does, "" for all rows.
+    results : tuple of str
+        The results whose disagreement it explains.
+    rows, of : int
+        Rows explained, of those that disagree in these results.
+    alternatives : tuple of str
+        Other mistakes that give the same numbers.
     """
 
     edit: str
     where: str
+    results: tuple[str, ...]
     rows: int
     of: int
-    unexplained: tuple[str, ...] = ()
+    alternatives: tuple[str, ...] = ()
+
+    @property
+    def unexplained(self) -> int:
+        """Rows that disagree and that it does not explain."""
+        return self.of - self.rows
+
+
+@dataclass(frozen=True)
+class Disagreement:
+    """How a result disagrees.
+
+    Parameters
+    ----------
+    result : str
+        Its name.
+    rows, compared : int
+        Rows that disagree, of those compared.
+    row : int
+        The row that disagrees most, from 1.
+    theirs : str
+        The other program's number there.
+    ours : float
+        The reference.
+    relative : float
+        The difference there, relative to the scene's largest velocity, spin or energy.
+    where : str
+        A condition on the scene under which rows disagree, "" without one.
+    """
+
+    result: str
+    rows: int
+    compared: int
+    row: int
+    theirs: str
+    ours: float
+    relative: float
+    where: str = ""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """The comparison of a table with the reference.
+    """The result of `impact88.compare`.
 
     Parameters
     ----------
     passed : bool
-        True if every row agrees.
-    rows : int
-        Rows compared.
+        True if every result was compared and none disagrees; of a kit, if every vector passes.
+    rows, agreeing, differing : int
+        Rows of the table, those that agree and those that do not.
     causes : tuple of Cause
-        Mistakes that reproduce the table's numbers, the best first.
-    disagreements : tuple of str
-        Columns and rows that disagree, by how much, and under which condition.
+        Mistakes that explain the rows that disagree.
+    disagreements : tuple of Disagreement
+        For each result that disagrees, in how many rows and by how much.
+    notes : tuple of str
+        Digits lost, rows and columns that could not be compared.
+    differing_rows : tuple of int
+        The first rows that disagree, from 1.
+    kit : dict of str to object, optional
+        The kit's id, its number of vectors, and the reason of each that fails.
     """
 
     passed: bool
     rows: int
+    agreeing: int
+    differing: int
     causes: tuple[Cause, ...] = ()
-    disagreements: tuple[str, ...] = ()
+    disagreements: tuple[Disagreement, ...] = ()
+    notes: tuple[str, ...] = ()
+    differing_rows: tuple[int, ...] = ()
+    kit: Mapping[str, Any] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        from .words import as_text
+
+        return as_text(self)

@@ -1,0 +1,191 @@
+"""One rule: a number agrees within the rounding of a careful program, or half its last digit.
+
+The rounding allowed is a first-order bound of the forward error (Bauer 1974; Miller and Spooner
+1978): each input and each statement of the reference is changed by one unit in its last place, and
+the changes of a result are added up, `SAFETY` times. The bound is the same in all systems of units.
+A difference beyond it and up to `LOST_DIGITS` of the scene's largest velocity (spin, energy ...) is
+rounding of a program that loses digits: it is reported, and no mistake is looked for. What
+elimination may lose in a scene is bounded by Skeel's condition number of its equations.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.closedform.solve import solve
+from ..names import RESULTS
+from .evaluation import Floats, Program
+from .spellings import COLUMNS, VELOCITIES
+
+Bools = NDArray[np.bool_]
+SAFETY = 4.0  # roundings of a result's own operations, and those that a spelling orders otherwise
+LOST_DIGITS = 1e-10  # of the scene's size: 10 digits are what any method for 6 unknowns keeps
+EPSILON = 2.0**-52
+STEP = 2.0**-30  # of a change whose effect is scaled to one unit in the last place
+STRIP = 4096  # scenes at a time: about a hundred arrays stay in the cache
+LARGEST_BODY = 1e200  # in place of an infinite mass, whose products have no value
+ELIMINATION_STEPS = 2.0**6  # roundings of an entry of six equations
+COMPARED = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
+NO_ANSWER_NEEDED = 32 | 64  # bits of STATUS: nearly singular, not finite
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Results of scenes, by name.
+
+    ``bounds`` is what rounding may change in each; ``scales`` is the scene's largest quantity of
+    the kind; ``ties``: scenes where rounding decides which way the contact slides, whose results
+    the other way are ``alternatives``; ``optional``: scenes that a program may refuse.
+    """
+
+    values: Mapping[str, Floats]
+    bounds: Mapping[str, Floats]
+    scales: Mapping[str, Floats]
+    ties: Bools
+    alternatives: Mapping[str, Floats]
+    optional: Bools
+
+
+def strips(size: int) -> Iterator[slice]:
+    """Yield slices of scenes that are computed together."""
+    for start in range(0, max(size, 1), STRIP):
+        yield slice(start, start + STRIP)
+
+
+@np.errstate(all="ignore")
+def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> Reference:
+    """Return the results of scenes, with what rounding may change in them.
+
+    Parameters
+    ----------
+    scene : mapping of str to ndarray
+        The columns of the scenes.
+    names : sequence of str
+        Results wanted.
+
+    Returns
+    -------
+    Reference
+        Arrays with a value for each scene.
+    """
+    wanted = tuple(dict.fromkeys([*names, *VELOCITIES, "KI", "PN", "PT", "PM", "MUC"]))
+    values = solve(scene, [*wanted, "STATUS"])
+    size = len(scene["UX"])
+    bounds = {name: np.empty(size) for name in (*wanted, "gt")}
+    sliding = np.empty(size)
+    for part in strips(size):
+        moved, sliding[part] = _moved({n: scene[n][part] for n in COLUMNS}, wanted)
+        for name, bound in moved.items():
+            bounds[name][part] = bound
+    ties = np.abs(sliding) <= bounds.pop("gt")
+    for name in wanted:
+        bounds[name] += EPSILON * np.abs(values[name])
+    flipped = {**scene, "MU": np.where(scene["MU"] == -10.0, scene["MU"], -scene["MU"])}
+    status = values.pop("STATUS").astype(int)
+    return Reference(
+        values,
+        bounds,
+        _scales(scene, values),
+        ties,
+        {name: np.where(ties, column, np.nan) for name, column in solve(flipped, wanted).items()}
+        if ties.any()
+        else values,
+        (status & NO_ANSWER_NEEDED) > 0,
+    )
+
+
+def _finite(scene: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return scenes with large bodies in place of infinite ones."""
+    bodies = ("MA", "MB", "IA", "IB")
+    return {n: np.minimum(c, LARGEST_BODY) if n in bodies else c for n, c in scene.items()}
+
+
+def _moved(scene: Mapping[str, Floats], names: Sequence[str]) -> tuple[dict[str, Floats], Floats]:
+    """Return the bounds of results and of the sliding velocity "gt", and that velocity."""
+    program = Program("impulses", _finite(scene))
+    base = program.base
+    kept = ("point", "pivot", "stick")
+    targets = [s.target for s in program.statements if s.target not in (*kept, *names)]
+    moves = {target: base[target] * (1 + STEP) for target in (*COLUMNS[:-1], *targets)}
+    moves["MU"] = np.where(base["MU"] == -10.0, base["MU"], moves["MU"])
+    sums = {name: np.zeros(program.size) for name in (*names, "gt")}
+    for target, value in moves.items():
+        changed = program.propagate({target: value})
+        for name, total in sums.items():
+            if changed[name] is not base[name]:
+                total += np.abs(changed[name] - base[name])
+    # a program's results follow from rounded energies and impulses, too
+    for target in ("KI", "KF", "PN", "PT", "PM", *VELOCITIES):
+        changed = program.propagate({target: base[target] * (1 + STEP)})
+        for name, total in sums.items():
+            if name != target and changed[name] is not base[name]:
+                total += np.abs(changed[name] - base[name])
+    factor = SAFETY * EPSILON / STEP
+    return {name: total * factor for name, total in sums.items()}, base["gt"]
+
+
+def _scales(scene: Mapping[str, Floats], values: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return the largest quantity of each result's kind in each scene."""
+
+    def largest(*columns: Any) -> Any:
+        return reduce(np.fmax, [np.abs(column) for column in columns])
+
+    before = [scene[name] for name in ("UX", "UY", "VX", "VY")]
+    speed = largest(*before, *(values[name] for name in VELOCITIES[:4]))
+    spin = largest(scene["WA"], scene["WB"], values["WAF"], values["WBF"])
+    impulse = np.hypot(values["PN"], values["PT"])
+    turning = largest(values["PM"], impulse * scene["DA"], impulse * scene["DB"])
+    ratio = largest(1.0, values["MUC"])
+    kinds = {"W": spin, "K": values["KI"], "EL": values["KI"], "L": 100.0, "MU": ratio}
+    kinds |= {"PN": impulse, "PT": impulse, "PM": turning}
+    size = len(scene["UX"])
+    scales = {}
+    for name in values:
+        kind = next((k for k in kinds if name.startswith(k)), "")
+        scales[name] = np.abs(np.broadcast_to(kinds.get(kind, speed), size))
+    return scales
+
+
+@np.errstate(all="ignore")
+def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Floats]:
+    """Return what rounding may change in results where elimination finds the velocities.
+
+    Notes
+    -----
+    Skeel's bound ``|A^-1| (|A| |x| + |b|)`` of Equations 13-18, `ELIMINATION_STEPS` roundings.
+    """
+    size = len(scene["UX"])
+    bounds = np.full((size, 6), np.nan)
+    for part in strips(size):
+        program = Program("equations", {n: scene[n][part] for n in COLUMNS})
+        matrix, right, solution = (array[0] for array in program.system())
+        scale = np.abs(matrix).max(-1, keepdims=True)
+        matrix, right = matrix / scale, right / scale[..., 0]
+        good = np.isfinite(matrix.sum((-2, -1))) & (np.linalg.det(matrix) != 0)
+        inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
+        size_of_terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
+        bound = (np.abs(inverse) @ size_of_terms)[..., 0]
+        bounds[part] = np.where(good[:, None], bound, np.nan)
+    allowed = dict(zip(VELOCITIES, (ELIMINATION_STEPS * EPSILON * bounds).T, strict=True))
+    return {name: allowed[name] for name in names if name in allowed} | _follow(
+        scene, allowed, [name for name in names if name not in allowed]
+    )
+
+
+def _follow(
+    scene: Mapping[str, Floats], bounds: Mapping[str, Floats], names: Sequence[str]
+) -> dict[str, Floats]:
+    """Return what changes of the velocities change in the results that follow from them."""
+    program = Program("impulses", _finite(scene))
+    velocities = {name: program.base[name] for name in VELOCITIES}
+    program = Program("impulses", _finite(scene), (), velocities)
+    sums = {name: np.zeros(program.size) for name in names}
+    for velocity, bound in bounds.items():
+        changed = program.propagate({velocity: velocities[velocity] + bound})
+        for name, total in sums.items():
+            total += np.abs(changed[name] - program.base[name])
+    return sums

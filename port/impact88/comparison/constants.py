@@ -1,0 +1,220 @@
+"""Fit a constant that has a wrong value: each row gives its own, and the rows must agree."""
+
+from collections.abc import Callable, Mapping
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .conditions import roundest
+from .evaluation import Edit, Floats, Program, evaluate, stack
+from .mutants import HOLE, sites
+from .spellings import COLUMNS, NAMES, VELOCITIES, spelling
+
+if TYPE_CHECKING:
+    from .diagnosis import Sample
+
+ROWS = 8  # of those that disagree, that a constant is fitted to
+ITERATIONS = 6  # of the secant method; more change no digit of a constant that rows agree on
+FIRST_STEP = 1e-4
+MIN_ROWS = 2  # that give a constant
+MAX_SPREAD = 1e-2  # of the constants that the rows give, relative; the digits then decide
+EXACT_SPREAD = 1e-9  # up to which the constant has all its digits
+KNOWN_TOLERANCE = 1e-6  # relative distance at which a constant is a known one
+RANK = 5  # behind the edits without a constant
+RANK_KNOWN = 1
+GROUPS = {
+    "<": "GA,PA,PB,TA,TB PA,PB TA,TB DA,DB MA,MB,IA,IB MA,MB IA,IB UX,UY,VX,VY UX,UY VX,VY WA,WB",
+    ">": "VAX,VAY,VBX,VBY VAX,VAY VBX,VBY WAF,WBF KI,KF DVA,DVB PN,PT",
+}
+"""Columns read, and results shown, that share a constant."""
+KNOWN = {
+    "1.467 for 22/15": 1.467 * 15 / 22,
+    "3.14 for pi": 3.14 / pi,
+    "22/7 for pi": 22 / 7 / pi,
+    "3.1416 for pi": 3.1416 / pi,
+    "57.3 for 180/pi": 57.3 * pi / 180,
+    "0.01745 for pi/180": 0.01745 * 180 / pi,
+    "32.2 for 32.174": 32.2 / 32.174,
+    "9.81 for 9.80665": 9.81 / 9.80665,
+    "ft/s for mph": 22 / 15,
+    "m/s for ft/s": 0.3048,
+    "km/h for m/s": 3.6,
+    "mph for m/s": 0.44704,
+    "kg for lb": 0.45359237,
+    "kg for slug": 14.59390294,
+    "weight for mass, in ft and s": 32.174,
+    "weight for mass, 32.2 ft/s²": 32.2,
+    "weight for mass, in m and s": 9.80665,
+    "degrees for radians": 180 / pi,
+    "revolutions per minute for radians per second": 30 / pi,
+    "inches for feet": 12.0,
+    "square inches for square feet": 144.0,
+}
+"""Ratios of constants and units that are mistaken for each other."""
+
+
+class Form(NamedTuple):
+    """How a constant enters: the value with it, as a function and as text; the neutral constant."""
+
+    apply: Callable[[Any, Any], Any]
+    text: str
+    neutral: float
+    says: str
+
+
+FACTOR = Form(lambda x, k: x * k, "{0} * {1}", 1.0, "multiplied by {}")
+TERM = Form(lambda x, k: x + k, "{0} + {1}", 0.0, "increased by {}")
+LIMIT = Form(
+    lambda x, k: np.sign(x) * k,
+    "where({0} == -10, {0}, maximum(minimum({0}, {1}), -{1}))",
+    0.5,
+    "limited to {}",
+)
+Trial = Callable[[Floats], Mapping[str, Any]]
+"""Function of constants (places, rows) that returns a program's values with them."""
+
+
+@np.errstate(all="ignore")
+def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
+    """Return the edits of a part of a spelling by one constant that the rows agree on."""
+    wrong = np.flatnonzero(sample.wrong)
+    few = sample.rows(wrong[np.linspace(0, wrong.size - 1, min(ROWS, wrong.size)).astype(int)])
+    program = few.program(name)
+    edits = _statement_constants(few, program, part)
+    return edits + _column_constants(few, program) if name == NAMES[0] else edits
+
+
+def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
+    """Return the edits of columns as they are read, or results as they are shown."""
+    edits = []
+    for side, names in (("<", COLUMNS[:-1]), (">", tuple(sample.theirs))):
+        groups = [group.split(",") for group in GROUPS[side].split()]
+        groups = [g for g in groups if set(g) <= set(names)] + [[name] for name in names]
+        for group in groups:
+            forms = [FACTOR, TERM] if len(group) == 1 else [FACTOR]
+            forms += [LIMIT] if group[0] in ("E", "MU", "EM") else []
+            for form in forms:
+                trial = _column_trial(program, side, group, form)
+                (constant,) = _fit(sample, trial, form, 1)
+                if np.isfinite(constant):
+                    number, known = _written(constant, form)
+                    verb = "read" if side == "<" else "shown"
+                    says = f"{', '.join(group)} {form.says.format(number)}, as {verb}{known}"
+                    changes = {f"{side} {n}": form.text.format(n, number) for n in group}
+                    edits.append(Edit(says, changes, RANK_KNOWN if known else RANK - 1))
+    return edits
+
+
+def _column_trial(program: Program, side: str, group: list[str], form: Form) -> Trial:
+    """Return the trial of a constant in columns."""
+
+    def trial(k: Floats) -> Mapping[str, Any]:
+        source = program.typed if side == "<" else program.base
+        values = {name: form.apply(source[name], k) for name in group}
+        return program.propagate(values) if side == "<" else {**program.base, **values}
+
+    return trial
+
+
+def _statement_constants(sample: "Sample", program: Program, part: str) -> list[Edit]:
+    """Return the edits of an expression in a statement by a constant factor or term."""
+    text = spelling(program.name)
+    reading = {s.target for s in text.statements[: text.own]} if program.name != NAMES[0] else set()
+    places: dict[str, dict[str, str]] = {}
+    for site in sites(program.name, part):
+        (target, *more), expression = site.targets, site.expressions[0]
+        if not more and target not in reading and expression not in VELOCITIES:
+            places.setdefault(target, {})[site.holes[0]] = expression
+    edits = []
+    for target, expressions in places.items():
+        scope = program.scope(target)
+        values = {hole: evaluate(text, scope) for hole, text in expressions.items()}
+        values = {h: v for h, v in values.items() if np.ndim(v) < 2 and np.size(v) > 1}
+        values = {h: v for h, v in values.items() if v.dtype == float}
+        for form in (FACTOR, TERM) if values else ():
+            trial = _statement_trial(program, target, values, form)
+            constants = _fit(sample, trial, form, len(values))
+            for hole, constant in zip(values, constants, strict=True):
+                if np.isfinite(constant):
+                    number, known = _written(constant, form)
+                    expected = expressions[hole]
+                    written = form.text.format(f"({expected})", number)
+                    changes = {target: hole.replace(HOLE, f"({written})")}
+                    rank = RANK_KNOWN if known else RANK
+                    written = form.text.format(expected, number) + known
+                    edits.append(Edit("", changes, rank, written, expected))
+    return edits
+
+
+def _statement_trial(
+    program: Program, target: str, values: Mapping[str, Any], form: Form
+) -> Trial:
+    """Return the trial of a constant at each place in a statement."""
+    scope = program.scope(target)
+
+    def trial(k: Floats) -> Mapping[str, Any]:
+        alternatives = [
+            evaluate(hole, {**scope, HOLE: form.apply(value, row)})
+            for (hole, value), row in zip(values.items(), k, strict=True)
+        ]
+        return program.propagate({target: stack(alternatives, program.size)})
+
+    return trial
+
+
+def _fit(sample: "Sample", trial: Trial, form: Form, count: int) -> list[float]:
+    """Return the constant at each place that the rows agree on, NaN where they do not.
+
+    Notes
+    -----
+    The secant method, in each row by itself; the results' differences are least squares.
+    """
+    shape = (count, sample.wrong.size)
+
+    def misfit(k: Floats) -> Any:
+        names = trial(k)
+        return np.array(
+            [
+                (np.broadcast_to(names[n], shape) - theirs) / sample.limits[n]
+                for n, theirs in sample.theirs.items()
+            ]
+        )
+
+    k = np.full(shape, form.neutral)
+    new = k + FIRST_STEP
+    before = misfit(k)
+    for _ in range(ITERATIONS):
+        after = misfit(new)
+        slope = after - before
+        good = np.isfinite(slope) & np.isfinite(after)
+        step = np.where(good, after * slope, 0).sum(0) / np.where(good, slope * slope, 0).sum(0)
+        step = step * (new - k)
+        k, before = new, after
+        new = np.where(np.isfinite(step), new - step, new)
+    return [_agreed(row, form) for row in new]
+
+
+def _agreed(values: Floats, form: Form) -> float:
+    """Return the constant that rows agree on, with the fewest digits; NaN if they do not."""
+    values = values[np.isfinite(values)]
+    if values.size < MIN_ROWS:
+        return np.nan
+    low, middle, high = (float(q) for q in np.quantile(values, (0.25, 0.5, 0.75)))
+    spread = high - low
+    if spread > MAX_SPREAD * abs(middle) or abs(middle - form.neutral) < EXACT_SPREAD:
+        return np.nan
+    if spread > EXACT_SPREAD * abs(middle):
+        return roundest(low, high)
+    return float(f"{middle:.9g}") if spread > 0 or abs(middle) > 1e-300 else middle
+
+
+def _written(constant: float, form: Form) -> tuple[str, str]:
+    """Return a constant's digits, and what it is known as."""
+    known = [
+        name
+        for name, value in KNOWN.items()
+        if form is FACTOR
+        and min(abs(constant / value - 1), abs(constant * value - 1)) < KNOWN_TOLERANCE
+    ]
+    return f"{constant:.10g}", f" ({known[0]})" if known else ""

@@ -1,0 +1,245 @@
+"""Name the mistake: mutation analysis, turned round.
+
+A competent programmer's program is nearly right (DeMillo, Lipton and Sayward 1978), so what it
+computes is computed by a small edit of the reference. Every edit is tried on a few rows that
+disagree; one that gives the other table's numbers, to their last digit, is tried on more. An edit
+that gives some rows only is one under a condition on the scene. Where one edit is not enough, a
+constant is fitted, or a second edit is looked for on top of the best. Nothing is named that does
+not give the rows kept out of the search.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .agreement import Bools
+from .conditions import Condition, find_condition, quantities_of
+from .constants import fit_constants
+from .evaluation import Edit, Floats, Program
+from .mutants import Site, describe, models, sites
+from .spellings import NAMES, VELOCITIES, spelling
+
+SCREEN_ROWS = 10  # rows that disagree on which every edit is tried
+MIN_SCREENED = 2  # of them, that an edit under a condition gives
+REQUIRED = 0.96  # of the rows, that an explanation gives
+MIN_HELD_OUT = 4  # rows; with fewer the search uses all
+MIN_BITS = 24.0  # of information in the rows: about a million edits are tried
+MAX_SURVIVORS = 600  # edits tried on all rows
+MAX_CONDITIONAL = 60  # edits for which a condition is looked for
+MAX_BASES = 6  # edits on top of which a second one is looked for
+MAX_ALTERNATIVES = 3  # listed, of those that give the same numbers
+
+
+class Sample(NamedTuple):
+    """Rows on which programs are tried.
+
+    ``columns`` of the scene, ``theirs`` (results), ``limits`` (how far off each may be), ``wrong``:
+    the rows that disagree.
+    """
+
+    columns: Mapping[str, Floats]
+    theirs: Mapping[str, Floats]
+    limits: Mapping[str, Floats]
+    wrong: Bools
+
+    def rows(self, places: NDArray[np.intp]) -> "Sample":
+        """Return some of the rows."""
+        parts = [{n: c[places] for n, c in part.items()} for part in self[:3]]
+        return Sample(parts[0], parts[1], parts[2], self.wrong[places])
+
+    def only(self, names: Iterable[str]) -> "Sample":
+        """Return the sample with some of the results."""
+        return self._replace(theirs={n: self.theirs[n] for n in names if n in self.theirs})
+
+    def program(self, name: str, edits: tuple[Edit, ...] = ()) -> Program:
+        """Return a spelling with edits on the rows; with their final velocities, if given."""
+        velocities = {n: self.columns[n] for n in VELOCITIES if n in self.columns}
+        return Program(name, self.columns, edits, velocities or None)
+
+    def fits(self, names: Mapping[str, Any], alternatives: int = 1) -> Bools:
+        """Return (alternatives, rows): whether all results are within their limits."""
+        shape = (alternatives, self.wrong.size)
+        fit = np.ones(shape, bool)
+        for name, theirs in self.theirs.items():
+            ours = names[name]
+            near = np.abs(ours - theirs) <= self.limits[name]
+            fit &= near | (np.isnan(ours) & np.isnan(theirs))
+            if not fit.any():
+                break
+        return fit
+
+
+class Candidate(NamedTuple):
+    """A program: a spelling with edits, under a condition; the rows of a sample that it gives."""
+
+    name: str
+    edits: tuple[Edit, ...]
+    rows: Bools
+    condition: Condition | None = None
+    alternatives: tuple[str, ...] = ()
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        """The likeliest first."""
+        return sum(edit.rank for edit in self.edits), NAMES.index(self.name)
+
+    @property
+    def text(self) -> str:
+        """The edits in words."""
+        return "; and ".join(describe(edit, self.name) for edit in self.edits)
+
+    def gives(self, sample: Sample) -> Bools:
+        """Return the rows of a sample that the program gives."""
+        rows: Bools = sample.fits(sample.program(self.name, self.edits).base)[0]
+        if self.condition is not None:
+            inside = self.condition.rows(quantities_of(sample.columns))
+            plain = sample.fits(sample.program(self.name).base)[0]
+            rows = np.where(inside, rows, plain)
+        return rows
+
+
+def score(rows: Bools, sample: Sample) -> int:
+    """Return how many rows that disagree are given, less those that agree and are not."""
+    return int((rows & sample.wrong).sum() - (~rows & ~sample.wrong).sum())
+
+
+def is_complete(rows: Bools, sample: Sample) -> bool:
+    """Return whether enough rows of both kinds are given."""
+    return all(
+        (rows & kind).sum() >= REQUIRED * kind.sum() for kind in (sample.wrong, ~sample.wrong)
+    )
+
+
+def information(sample: Sample, ours: Mapping[str, Any]) -> float:
+    """Return the bits that the rows that disagree hold: into how many their difference divides."""
+    bits = 0.0
+    for name, theirs in sample.theirs.items():
+        off = np.abs(theirs - ours[name])[sample.wrong] / sample.limits[name][sample.wrong]
+        bits += float(np.log2(off[np.isfinite(off) & (off > 1)]).sum())
+    return bits
+
+
+def _model_edits(name: str, part: str) -> Iterator[Edit]:
+    """Yield the laws and conventions for a part; laws are written in the first spelling."""
+    for edit in models():
+        shown = {key[2:] for key in edit.changes if key[0] == ">"}
+        is_law = any(key[0] not in "<>" for key in edit.changes)
+        is_late = bool(shown) and shown.isdisjoint(VELOCITIES)
+        if (part == "results") == is_late and (name == NAMES[0] or not is_law):
+            yield edit
+
+
+def _sites(name: str, part: str, with_reading: bool) -> Iterator[Site]:
+    """Yield the sites of a spelling; those of the reading where asked for."""
+    text = spelling(name)
+    reading = {statement.target for statement in text.statements[: text.own]}
+    for site in sites(name, part):
+        if with_reading or reading.isdisjoint(site.targets):
+            yield site
+
+
+@np.errstate(all="ignore")
+def search(
+    sample: Sample, part: str, names: Sequence[str] = NAMES, base: tuple[Edit, ...] = ()
+) -> list[Candidate]:
+    """Return the programs with one edit more than ``base`` that give rows, the best first.
+
+    ``part``: "velocities" or "results", whose statements are edited. With a sample whose columns
+    hold final velocities the results follow from those.
+    """
+    wrong = np.flatnonzero(sample.wrong)
+    places = wrong[np.linspace(0, wrong.size - 1, min(SCREEN_ROWS, wrong.size)).astype(int)]
+    screen = sample.rows(places)
+    candidates: list[Candidate] = []
+    edited = {key for edit in base for key in edit.changes}
+    for name in names:
+        small, full = screen.program(name, base), sample.program(name, base)
+        need = min(MIN_SCREENED, places.size)
+        hits: list[tuple[int, Site, int]] = []
+        for site in _sites(name, part, name == NAMES[0] or bool(base)):
+            if edited.isdisjoint(site.targets):
+                values = small.propagate(site.values(small))
+                counts = screen.fits(values, len(site.options)).sum(1)
+                hits += [(int(counts[k]), site, int(k)) for k in np.flatnonzero(counts >= need)]
+        hits.sort(key=lambda hit: -hit[0])
+        groups: dict[int, tuple[Site, list[int]]] = {}
+        for _, site, place in hits[:MAX_SURVIVORS]:
+            groups.setdefault(id(site), (site, []))[1].append(place)
+        for site, options in groups.values():
+            fits = sample.fits(full.propagate(site.values(full, options)), len(options))
+            for place, rows in zip(options, fits, strict=True):
+                candidates.append(Candidate(name, (*base, site.edit(name, place)), rows))
+        if name == NAMES[0] or base:
+            for edit in _model_edits(name, part):
+                if edited.isdisjoint(edit.changes):
+                    fit = screen.fits(small.run(edit.changes))[0]
+                    if fit.sum() >= need:
+                        rows = sample.fits(full.run(edit.changes))[0]
+                        candidates.append(Candidate(name, (*base, edit), rows))
+    return sorted(candidates, key=lambda c: (-score(c.rows, sample), c.rank))
+
+
+def _conditional(candidates: Sequence[Candidate], sample: Sample) -> list[Candidate]:
+    """Return candidates with the condition under which they hold, where one is found."""
+    quantities = quantities_of(sample.columns)
+    conditional = []
+    for candidate in _distinct(candidates)[:MAX_CONDITIONAL]:
+        inside, outside = candidate.rows & sample.wrong, ~candidate.rows
+        condition = find_condition(quantities, inside, outside & ~sample.wrong)
+        if condition is not None:
+            rows = np.where(condition.rows(quantities), candidate.rows, ~sample.wrong)
+            conditional.append(candidate._replace(condition=condition, rows=rows))
+    return sorted(conditional, key=lambda c: (-score(c.rows, sample), c.rank))
+
+
+def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return the likeliest of the candidates that give the same rows."""
+    best: dict[bytes, Candidate] = {}
+    for candidate in candidates:
+        key = candidate.rows.tobytes()
+        if key not in best or candidate.rank < best[key].rank:
+            best[key] = candidate
+    return list(best.values())
+
+
+def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candidate | None:
+    """Return the likeliest program that gives the rows, and those kept out of the search."""
+
+    def confirmed(candidates: Sequence[Candidate]) -> Candidate | None:
+        usable = [c for c in candidates if is_complete(c.rows, sample)]
+        usable.sort(key=lambda c: c.rank)
+        for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
+            if is_complete(candidate.gives(held_out), held_out):
+                texts = [c.text for c in usable[place + 1 :] if c.condition == candidate.condition]
+                others = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
+                return candidate._replace(alternatives=others[:MAX_ALTERNATIVES])
+        return None
+
+    names = NAMES if part == "velocities" else NAMES[:1]
+    singles = search(sample, part, names)
+    if (cause := confirmed(singles)) is not None:
+        return cause
+    if (cause := confirmed(_conditional(singles, sample))) is not None:
+        return cause
+    constants = [
+        Candidate(name, (edit,), sample.fits(sample.program(name, (edit,)).base)[0])
+        for name in names
+        for edit in fit_constants(sample, name, part)
+    ]
+    if (cause := confirmed([*constants, *_conditional(constants, sample)])) is not None:
+        return cause
+    for base in _bases(singles, sample):
+        pairs = search(sample, part, (base.name,), base.edits)
+        if (cause := confirmed([*pairs, *_conditional(pairs[:10], sample)])) is not None:
+            return cause
+    return None
+
+
+def _bases(singles: Sequence[Candidate], sample: Sample) -> list[Candidate]:
+    """Return the edits on top of which a second one is looked for."""
+    harmless = [
+        c for c in singles if (c.rows & ~sample.wrong).sum() >= REQUIRED * (~sample.wrong).sum()
+    ]
+    return _distinct(harmless)[:MAX_BASES]

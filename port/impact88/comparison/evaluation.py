@@ -1,0 +1,210 @@
+"""Run a spelling on many scenes, with its statements edited, many alternatives at a time.
+
+Arrays have a value for each scene along their last axis; alternatives of an expression are along
+the axis before it. What an edit does not reach is not computed again.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from types import CodeType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .spellings import COLUMNS, Statement, names_in, spelling
+
+Floats = NDArray[np.float64]
+Values = dict[str, Any]
+
+
+def _single(x: Any) -> Any:
+    """Return numbers rounded to single precision."""
+    return np.asarray(x, np.float32).astype(np.float64)
+
+
+FUNCTIONS: Mapping[str, Any] = {
+    name: getattr(np, name)
+    for name in "sin cos tan sqrt hypot where abs sign trunc rint fmod minimum maximum".split()
+} | {
+    "pi": np.pi,
+    "single": _single,
+    "round_half_up": lambda x: np.floor(x + 0.5),
+}
+"""What statements and edits may call."""
+
+
+class Edit(NamedTuple):
+    """A mistake or a convention.
+
+    ``changes`` maps a statement's target to the expression in its place; a column as it is read is
+    "< UX", a result as it is shown "> VAX". ``says`` describes it; an edit of a statement is
+    ``written`` in place of ``expected`` there. The lower the ``rank``, the likelier.
+    """
+
+    says: str
+    changes: Mapping[str, str]
+    rank: int = 0
+    written: str = ""
+    expected: str = ""
+
+
+@cache
+def _code(text: str) -> CodeType:
+    return compile(text, "<statement>", "eval")
+
+
+def evaluate(text: str, names: Values) -> Any:
+    """Return an expression's value; NaN where it has none."""
+    try:
+        return eval(_code(text), names)
+    except (ArithmeticError, NameError, TypeError, ValueError):
+        return np.nan
+
+
+def stack(values: Sequence[Any], size: int) -> Any:
+    """Return alternatives, each a value for each of ``size`` scenes, as one array."""
+    arrays = [np.asarray(value) for value in values]
+    largest = max(arrays, key=lambda array: array.ndim)
+    if largest.ndim < 3:
+        return np.array([np.broadcast_to(array, size) for array in arrays])
+    shape = (largest.shape[0], 1, size)
+    return np.concatenate([np.broadcast_to(array, shape) for array in arrays], 1)
+
+
+class Program:
+    """A spelling evaluated on scenes, with edits made.
+
+    Parameters
+    ----------
+    name : str
+        The spelling.
+    columns : mapping of str to ndarray
+        The scenes, and further columns that edits may read ("UX_before": of the row before).
+    edits : iterable of Edit
+        Edits, the later on top of the earlier.
+    velocities : mapping of str to ndarray, optional
+        Final velocities to take instead of computing them.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        columns: Mapping[str, Floats],
+        edits: Iterable[Edit] = (),
+        velocities: Mapping[str, Floats] | None = None,
+    ) -> None:
+        self.name = name
+        self.spelling = spelling(name)
+        self.size = int(np.size(columns["UX"]))
+        self.typed: Values = {**FUNCTIONS, **columns}
+        self.statements = list(self.spelling.statements)
+        identity = np.eye(len(self.spelling.unknowns) + 1)[1:]
+        self.basis = dict(zip(self.spelling.unknowns, identity[:, :, None, None], strict=True))
+        self.shown: list[Mapping[str, str]] = []
+        self.base: Values = dict(self.typed)
+        for edit in edits:
+            self.shown.append(edit.changes)
+            self._write(edit.changes)
+            for key, text in edit.changes.items():
+                if key[0] == "<":
+                    self.base[key[2:]] = evaluate(text, self.typed)
+        self._first = 0
+        self.base = self._advance(self.base, set(COLUMNS), {})
+        if velocities:
+            self._first = self.spelling.results
+            self.base = self.propagate(velocities)
+
+    def _write(self, changes: Mapping[str, str]) -> None:
+        """Put expressions in place of others."""
+        for place, statement in enumerate(self.statements):
+            if statement.target in changes:
+                text = changes[statement.target]
+                self.statements[place] = statement._replace(text=text, reads=names_in(text))
+
+    @property
+    def linear(self) -> frozenset[str]:
+        """Targets whose expressions contain unknowns."""
+        equations = self.spelling.equations
+        return frozenset({*equations, "slip", "hold"}) if equations else frozenset()
+
+    def scope(self, target: str) -> Values:
+        """Return the names that a statement's expression may read, with their values."""
+        return {**self.base, **self.basis} if target in self.linear else self.base
+
+    def propagate(self, values: Mapping[str, Any]) -> Values:
+        """Return all values where some statements or columns have other values."""
+        return self._advance({**self.base, **values}, set(values), {})
+
+    def run(self, changes: Mapping[str, str]) -> Values:
+        """Return all values with further expressions edited."""
+        columns = {
+            key[2:]: evaluate(text, self.typed) for key, text in changes.items() if key[0] == "<"
+        }
+        texts = {key: text for key, text in changes.items() if key[0] not in "<>"}
+        names = self._advance({**self.base, **columns}, set(columns), texts)
+        return _show(names, changes)
+
+    def _advance(self, names: Values, dirty: set[str], texts: Mapping[str, str]) -> Values:
+        """Compute what is edited or reads a dirty name; what is dirty at first keeps its value."""
+        fixed = frozenset(dirty)
+        last = self.spelling.equations[-1] if self.spelling.unknowns else ""
+        linear = self.linear
+        for statement in self.statements[self._first :]:
+            target = statement.target
+            text = texts.get(target, statement.text)
+            if target not in fixed and (target in texts or not dirty.isdisjoint(statement.reads)):
+                scope = {**names, **self.basis} if target in linear else names
+                names[target] = evaluate(text, scope)
+                dirty.add(target)
+            if target == last and not dirty.isdisjoint(self.spelling.equations):
+                names.update(self._solve([names[name] for name in self.spelling.equations]))
+                dirty.update(self.spelling.unknowns)
+        for changes in self.shown:
+            _show(names, changes)
+        return names
+
+    def _solve(self, equations: Sequence[Any]) -> dict[str, Any]:
+        """Return the unknowns for which the equations are 0."""
+        _, _, solution = self.system(equations)
+        values = np.moveaxis(solution, -1, 0)
+        if values.shape[1] == 1:
+            values = values[:, 0]
+        return dict(zip(self.spelling.unknowns, values, strict=True))
+
+    def system(self, equations: Sequence[Any] | None = None) -> tuple[Floats, Floats, Floats]:
+        """Return matrices (alternatives, scenes, m, m), right sides and solutions (..., m)."""
+        if equations is None:
+            equations = [self.base[name] for name in self.spelling.equations]
+        count = len(self.spelling.unknowns) + 1
+        arrays = [np.asarray(equation, np.float64) for equation in equations]
+        alternatives = max([a.shape[-2] for a in arrays if a.ndim > 1], default=1)
+        shape = (count, alternatives, self.size)
+        residuals = np.array([np.broadcast_to(array, shape) for array in arrays])
+        matrix = np.moveaxis(residuals[:, 1:] - residuals[:, :1], (0, 1), (-2, -1))
+        right = np.moveaxis(-residuals[:, 0], 0, -1)
+        scale = np.abs(matrix).max(-1)
+        good = np.isfinite(matrix.sum((-2, -1))) & np.isfinite(right.sum(-1)) & (scale > 0).all(-1)
+        scaled = matrix / scale[..., None]
+        scaled[~good] = np.eye(count - 1)
+        try:
+            solution = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            good &= np.linalg.det(scaled) != 0
+            scaled[~good] = np.eye(count - 1)
+            solution = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0]
+        solution[~good] = np.nan
+        return matrix, right, solution
+
+
+def _show(names: Values, changes: Mapping[str, str]) -> Values:
+    """Change the results that are shown otherwise."""
+    before = dict(names)
+    shown = {key[2:]: text for key, text in changes.items() if key[0] == ">"}
+    names.update({name: evaluate(text, before) for name, text in shown.items()})
+    return names
+
+
+def statement_of(name: str, target: str) -> Statement:
+    """Return a spelling's statement."""
+    return next(s for s in spelling(name).statements if s.target == target)

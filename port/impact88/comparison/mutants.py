@@ -1,0 +1,308 @@
+"""Small mistakes: the first-order mutants of a spelling, and named laws and conventions.
+
+A site is an expression in a statement, all equal expressions of it, or the expressions at one place
+in several statements of one form. Its options are what may be written there by mistake.
+"""
+
+import ast
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from importlib import resources
+from itertools import combinations
+from typing import Any, NamedTuple
+
+from ..names import RESULTS
+from .evaluation import Edit, Program, evaluate, stack, statement_of
+from .spellings import COLUMNS, VELOCITIES, Statement, parse, spelling
+
+HOLE = "_"
+RANK_MODEL = 0  # a law or a convention with a name
+RANK_NEAR = 2  # an operator, a sign, a name of one other letter
+RANK_FAR = 4  # any other name
+RANK_TWIN = 3  # the same in several statements
+
+PATTERNS = {
+    "a + b": "a; b; a - b; b - a; a * b",
+    "a - b": "a; b; a + b; b - a; a * b",
+    "a * b": "a; b; a / b; a + b; a - b; b / a",
+    "a / b": "a; b; a * b; b / a; a - b; a + b",
+    "a ** 2": "a; 2 * a; a ** 3; a * abs(a)",
+    "-a": "a",
+    "1 / a": "1 - a; 1 + a",
+    "sin(a)": "cos(a); tan(a); a",
+    "cos(a)": "sin(a); tan(a); 1 - 0 * a",
+    "hypot(a, b)": "a; b; abs(a); abs(b); abs(a) + abs(b); a * a + b * b",
+    "sqrt(a)": "a; a * a",
+    "where(p, a, b)": "a; b; where(p, b, a)",
+    "a > b": "a >= b; a < b; a == b; a != b",
+    "a < b": "a <= b; a > b; a == b; a != b",
+    "a == b": "a != b; a < b; a > b; a <= b; a >= b",
+}
+"""An expression -> what may be written instead; single letters stand for any expression."""
+ANY = "-a; 0; 1; 2 * a; a / 2; a * a; abs(a); 1 / a; sqrt(abs(a)); a * pi / 180; a * 180 / pi; 1 - a; 1 + a"
+LINEAR = "-a; 0; 2 * a; a / 2"
+CONDITIONS = ("point", "pivot", "stick")
+CONSTANTS = "0; 1; 2; 3; 4; -1; 0.5; 10; 100; 90; 360"
+"""What may be written for any number, for an expression with unknowns, for a constant."""
+
+
+class Option(NamedTuple):
+    """An expression: a template, and what its letters stand for."""
+
+    template: str
+    parts: Mapping[str, str]
+    rank: int = RANK_NEAR
+
+    @property
+    def text(self) -> str:
+        """The expression written out."""
+        text = re.sub(r"\b[a-z]\b", lambda letter: f"({self.parts[letter[0]]})", self.template)
+        return ast.unparse(parse(text))
+
+    def value(self, names: dict[str, Any]) -> Any:
+        """Return its value."""
+        letters = {letter: evaluate(part, names) for letter, part in self.parts.items()}
+        return evaluate(self.template, {**names, **letters})
+
+
+class Site(NamedTuple):
+    """Expressions of statements (``targets``), with their options.
+
+    ``holes`` are the statements with `HOLE` in place of the ``expressions``; ``options`` has a row
+    for each option, with one for each target.
+    """
+
+    targets: tuple[str, ...]
+    holes: tuple[str, ...]
+    expressions: tuple[str, ...]
+    options: tuple[tuple[Option, ...], ...]
+
+    def values(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
+        """Return the statements' values, one alternative for each option (that is chosen)."""
+        options = self.options if chosen is None else [self.options[k] for k in chosen]
+        values = {}
+        for place, (target, hole) in enumerate(zip(self.targets, self.holes, strict=True)):
+            scope = program.scope(target)
+            alternatives = [row[place].value(scope) for row in options]
+            values[target] = evaluate(hole, {**scope, HOLE: stack(alternatives, program.size)})
+        return values
+
+    def edit(self, name: str, place: int) -> Edit:
+        """Return an option of a spelling's site as an edit."""
+        options = self.options[place]
+        texts = [option.text for option in options]
+        changes = {
+            target: re.sub(rf"\b{HOLE}\b", f"({text})", hole)
+            for target, hole, text in zip(self.targets, self.holes, texts, strict=True)
+        }
+        rank = options[0].rank + (RANK_TWIN if len(self.targets) > 1 else 0)
+        return Edit("", changes, rank, "; ".join(texts), "; ".join(self.expressions))
+
+
+def _match(pattern: ast.AST, node: ast.AST, parts: dict[str, str]) -> bool:
+    """Return whether a node has a pattern's form; note what its letters stand for."""
+    if isinstance(pattern, ast.Name) and len(pattern.id) == 1:
+        parts[pattern.id] = ast.unparse(node)
+        return True
+    if pattern.__class__ is not node.__class__:
+        return False
+    if isinstance(pattern, ast.Name | ast.Constant):
+        return ast.unparse(pattern) == ast.unparse(node)
+    pairs = zip(ast.iter_child_nodes(pattern), ast.iter_child_nodes(node), strict=False)
+    return all(_match(p, n, parts) for p, n in pairs)
+
+
+@cache
+def _patterns() -> list[tuple[ast.expr, list[str]]]:
+    return [(parse(pattern), options.split("; ")) for pattern, options in PATTERNS.items()]
+
+
+def near_names(name: str, scope: Sequence[str]) -> list[str]:
+    """Return the names that differ in one letter, in capitals, or as before and after do."""
+    pairs = {"VAX": "UX", "VAY": "UY", "VBX": "VX", "VBY": "VY", "WAF": "WA", "WBF": "WB"}
+    pairs |= {after: before for before, after in pairs.items()}
+    return [
+        other
+        for other in scope
+        if other != name
+        and (
+            other.lower() == name.lower()
+            or other == pairs.get(name)
+            or (len(other) == len(name) and sum(map(str.__ne__, other, name)) == 1)
+        )
+    ]
+
+
+def _options(node: ast.expr, names: Sequence[str], unknowns: frozenset[str]) -> list[Option]:
+    """Return what may be written for a node; ``names`` may be written for a name."""
+    text = ast.unparse(node)
+    whole = {"a": text}
+    if isinstance(node, ast.Constant):
+        return [Option(number, {}) for number in CONSTANTS.split("; ") if number != text]
+    options = []
+    for pattern, templates in _patterns():
+        parts: dict[str, str] = {}
+        if _match(pattern, node, parts):
+            options += [Option(template, parts) for template in templates]
+    if isinstance(node, ast.Compare):
+        return [*options, Option("a != a", whole), Option("a == a", whole)]
+    if isinstance(node, ast.Name) and text != "pi":
+        near = near_names(text, names)
+        others = [n for n in names if n not in near and n != text]
+        options += [Option("a", {"a": name}) for name in near]
+        options += [Option("a", {"a": name}, RANK_FAR) for name in others]
+    inside = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+    general = ANY if inside.isdisjoint(unknowns) else LINEAR
+    return options + [Option(template, whole) for template in general.split("; ")]
+
+
+def _nodes(tree: ast.expr) -> list[ast.expr]:
+    """Return the expressions in a tree, without the names of functions."""
+    functions = {id(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    return [n for n in ast.walk(tree) if isinstance(n, ast.expr) and id(n) not in functions]
+
+
+def _with_hole(text: str, nodes: Sequence[ast.expr]) -> str:
+    """Return a statement's text with a hole in place of some of its nodes."""
+    for node in sorted(nodes, key=lambda n: -n.col_offset):
+        text = f"{text[: node.col_offset]}{HOLE}{text[node.end_col_offset :]}"
+    return text
+
+
+def _sites_of(statement: Statement, names: Sequence[str], unknowns: frozenset[str]) -> list[Site]:
+    """Return the sites of one statement: each expression, and equal ones together."""
+    groups: dict[str, list[ast.expr]] = {}
+    for node in _nodes(parse(statement.text)):
+        groups.setdefault(ast.unparse(node), []).append(node)
+    sites = []
+    for text, nodes in groups.items():
+        options = tuple((option,) for option in _options(nodes[0], names, unknowns))
+        chosen = [[node] for node in nodes] + ([nodes] if len(nodes) > 1 else [])
+        holes = [_with_hole(statement.text, members) for members in chosen]
+        sites += [Site((statement.target,), (hole,), (text,), options) for hole in holes]
+    return sites
+
+
+def _twin_sites(statements: Sequence[Statement], unknowns: frozenset[str]) -> list[Site]:
+    """Return the sites of statements of one form: the same mistake at one place in all."""
+    trees = [_nodes(parse(statement.text)) for statement in statements]
+    sites = []
+    for nodes in zip(*trees, strict=True):
+        rows = [_options(node, (), unknowns) for node in nodes]
+        if len({tuple(option.template for option in row) for row in rows}) > 1:
+            continue
+        sites.append(
+            Site(
+                tuple(s.target for s in statements),
+                tuple(_with_hole(s.text, [n]) for s, n in zip(statements, nodes, strict=True)),
+                tuple(map(ast.unparse, nodes)),
+                tuple(zip(*rows, strict=True)),
+            )
+        )
+    return sites
+
+
+@cache
+def sites(name: str, part: str) -> tuple[Site, ...]:
+    """Return the sites of a spelling's "velocities" or "results"."""
+    text = spelling(name)
+    first, last = (0, text.results) if part == "velocities" else (text.results, None)
+    unknowns = frozenset(text.unknowns) if part == "velocities" else frozenset()
+    names = [*COLUMNS, *(s.target for s in text.statements[: first or text.own])]
+    names += VELOCITIES if part == "results" else []
+    all_sites: list[Site] = []
+    forms: dict[str, list[Statement]] = {}
+    for statement in text.statements[first:last]:
+        linear = statement.reads & unknowns
+        usable = [n for n in names if n not in CONDITIONS]
+        usable += [n for n in text.unknowns if linear]
+        all_sites += _sites_of(statement, list(dict.fromkeys(usable)), unknowns)
+        form = re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", statement.text)
+        forms.setdefault(form, []).append(statement)
+        if not linear:
+            names.append(statement.target)
+    for members in forms.values():
+        groups = list(combinations(members, 2))
+        groups += [tuple(members)] if len(members) > 2 else []  # type: ignore[list-item]
+        for group in groups:
+            all_sites += _twin_sites(group, unknowns)
+    return tuple(site for site in all_sites if site.options)
+
+
+@cache
+def models() -> tuple[Edit, ...]:
+    """Return the laws and conventions of ``models.txt``, and those of single columns."""
+    edits, section = [], ""
+    text = resources.files(__package__).joinpath("models.txt").read_text("utf-8")
+    for line in text.splitlines():
+        if line.startswith("["):
+            section = line
+        elif " | " in line and not line.startswith("#"):
+            says, rest = line.split(" | ", 1)
+            changes = {}
+            for side, part in zip("<>", (rest + ";;").split(";;"), strict=False):
+                for assignment in filter(str.strip, part.split(";")):
+                    target, expression = assignment.strip().split(" = ", 1)
+                    changes[target if section == "[laws]" else f"{side} {target}"] = expression
+            edits.append(Edit(says, changes, RANK_MODEL))
+    results = [name for name in RESULTS if name not in ("COND", "STATUS")]
+    return (*edits, *_columns("<", COLUMNS[:-1], "as read"), *_columns(">", results, "as shown"))
+
+
+_FORMS = {
+    "{} with the opposite sign": "-@",
+    "{} left out (0)": "0 * @",
+    "{} squared": "@ * abs(@)",
+    "the square root of {}": "sign(@) * sqrt(abs(@))",
+    "{} without its sign": "abs(@)",
+    "1 - {0} in place of {0}": "1 - @",
+    "{} cut to a whole number": "trunc(@)",
+    "{} rounded to a whole number": "rint(@)",
+    "{} in single precision": "single(@)",
+    "negative {} taken as 0": "maximum(@, 0)",
+    "positive {} taken as 0": "minimum(@, 0)",
+    "{} limited to 1": "maximum(minimum(@, 1), -1)",
+    "{} always 1": "0 * @ + 1",
+    "the remainder of {} by 90": "fmod(@, 90)",
+    "the remainder of {} by 180": "fmod(@, 180)",
+    "{} in radians": "@ * pi / 180",
+    "{} in degrees": "@ * 180 / pi",
+}
+
+
+def _columns(side: str, names: Sequence[str], how: str) -> Iterator[Edit]:
+    """Yield the conventions of each column by itself, and of two exchanged."""
+    for name in names:
+        for says, form in _FORMS.items():
+            changes = {f"{side} {name}": form.replace("@", name)}
+            yield Edit(f"{says.format(name)}, {how}", changes, RANK_MODEL + 1)
+        near = near_names(name, names)
+        for other in near:
+            says = f"{other} in place of {name}, {how}"
+            yield Edit(says, {f"{side} {name}": other}, RANK_MODEL + 1)
+            if other > name:
+                swap = {f"{side} {name}": other, f"{side} {other}": name}
+                yield Edit(f"{name} and {other} exchanged, {how}", swap, RANK_MODEL + 1)
+        for other in names:
+            if side == ">" and other not in near and other != name:
+                says = f"{other} in place of {name}, {how}"
+                yield Edit(says, {f"{side} {name}": other}, RANK_FAR)
+        for row in ("before", "after") if side == "<" else ():
+            says = f"{name} of the row {row}"
+            yield Edit(says, {f"{side} {name}": f"{name}_{row}"}, RANK_MODEL + 1)
+
+
+def describe(edit: Edit, name: str) -> str:
+    """Return a sentence: what is written in which statement, and what should be."""
+    if edit.says:
+        return edit.says
+    parts = []
+    written = edit.written.split("; ")
+    expected = edit.expected.split("; ")
+    for target, new, old in zip(edit.changes, written, expected, strict=True):
+        statement = statement_of(name, target)
+        parts.append(
+            f"{statement.subject}: {new}, should be {old}, in {target} = {statement.text}"
+        )
+    return "; and ".join(parts)

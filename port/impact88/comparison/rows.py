@@ -1,0 +1,64 @@
+"""Mistakes of a table, not of a program: rows in another order, digits cut off, single precision."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from .agreement import Bools
+from .evaluation import Floats
+from .spellings import VELOCITIES
+
+MIN_COLUMNS = 4  # velocities that identify a row
+MIN_ROWS = 4
+MAX_ROWS = 2000  # that are looked up
+MAX_NEIGHBOURS = 8  # rows of nearly the same first velocity
+MIN_FRACTION = 0.9  # of the rows that hold another row's results
+SINGLE_EPSILON = 3e-7  # what results in single precision are off, at most
+
+
+def other_rows(
+    ours: Mapping[str, Floats],
+    theirs: Mapping[str, Floats],
+    limits: Mapping[str, Floats],
+    wrong: Bools,
+) -> str:
+    """Return how results are in other rows than their scenes, "" if they are not."""
+    names = [name for name in VELOCITIES if name in theirs]
+    if len(names) < MIN_COLUMNS or wrong.sum() < MIN_ROWS:
+        return ""
+    rows = np.flatnonzero(wrong)[:MAX_ROWS]
+    order = np.argsort(ours[names[0]], kind="stable")
+    ordered = ours[names[0]][order]
+    first, tolerance = theirs[names[0]][rows], limits[names[0]][rows]
+    starts = np.searchsorted(ordered, first - tolerance)
+    stops = np.minimum(np.searchsorted(ordered, first + tolerance), starts + MAX_NEIGHBOURS)
+    shifts = []
+    for row, start, stop in zip(rows, starts, stops, strict=True):
+        for other in order[start:stop]:
+            if other != row and all(
+                abs(ours[n][other] - theirs[n][row]) <= limits[n][row] for n in names
+            ):
+                shifts.append(int(other - row))
+                break
+    if len(shifts) < MIN_FRACTION * rows.size:
+        return ""
+    values, counts = np.unique(shifts, return_counts=True)
+    if counts.max() < MIN_FRACTION * len(shifts):
+        return "the results are those of other rows: the order of the rows differs"
+    shift = int(values[counts.argmax()])
+    return f"the results are those of the scene {abs(shift)} row(s) {'below' if shift > 0 else 'above'}"
+
+
+def cut_digits(ours: Floats, theirs: Floats, units: Floats, wrong: Bools) -> bool:
+    """Return whether the last digit is cut, not rounded: off by less than a unit, towards 0."""
+    off = ((ours - theirs) * np.sign(ours))[wrong]
+    unit = units[wrong]
+    return bool(((unit > 0) & (off > 0) & (off < unit * (1 + 1e-9))).all())
+
+
+def single_precision(ours: Floats, theirs: Floats) -> bool:
+    """Return whether a column is in single precision and right in it."""
+    with np.errstate(all="ignore"):
+        close = np.abs(theirs - ours) <= SINGLE_EPSILON * np.abs(ours)
+        single = theirs == theirs.astype(np.float32)
+    return bool((close & single)[np.isfinite(ours) & np.isfinite(theirs)].all())

@@ -1,0 +1,87 @@
+"""The planar impact as plain Python statements, one quantity each, its subject behind the "#".
+
+A spelling is a way in which programs are written. It consists of the statements of ``reading``,
+its own, and those of ``results``. Statements whose names begin with "eq" are equations, linear in
+the unknowns that ``solve`` returns: the left side minus the right side.
+"""
+
+import ast
+from functools import cache
+from importlib import resources
+from typing import NamedTuple
+
+from ...names import FINAL_VELOCITIES, SCENE
+
+NAMES = ("impulses", "frame", "equations", "bodies", "trial", "ratio")
+COLUMNS = tuple(SCENE)
+VELOCITIES = tuple(FINAL_VELOCITIES)
+
+
+class Statement(NamedTuple):
+    """``target = text``, about ``subject``; ``reads`` are the names in the text."""
+
+    target: str
+    text: str
+    subject: str
+    reads: frozenset[str]
+
+
+class Spelling(NamedTuple):
+    """Statements of a way of computing the impact.
+
+    ``own`` is the place of the first statement behind the reading, ``results`` that of the first
+    result; ``unknowns`` are solved for behind the last of the ``equations``.
+    """
+
+    statements: tuple[Statement, ...]
+    own: int
+    results: int
+    equations: tuple[str, ...]
+    unknowns: tuple[str, ...]
+
+
+@cache
+def parse(text: str) -> ast.expr:
+    """Return the syntax tree of an expression."""
+    return ast.parse(text.strip(), mode="eval").body
+
+
+@cache
+def names_in(text: str) -> frozenset[str]:
+    """Return the names that an expression reads."""
+    return frozenset(node.id for node in ast.walk(parse(text)) if isinstance(node, ast.Name))
+
+
+def _read(name: str) -> tuple[list[Statement], tuple[str, ...], tuple[str, ...]]:
+    """Return the statements of a file, its equations and its unknowns."""
+    source = resources.files(__name__).joinpath(f"{name}.py").read_text("utf-8")
+    lines = source.splitlines()
+    statements: list[Statement] = []
+    unknowns: tuple[str, ...] = ()
+    (function,) = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef))
+    for node in function.body:
+        if not isinstance(node, ast.Assign):
+            continue
+        (target,) = node.targets
+        if isinstance(target, ast.Tuple):
+            unknowns = tuple(map(ast.unparse, target.elts))
+            continue
+        text = ast.unparse(node.value)
+        subject = lines[(node.end_lineno or 1) - 1].partition("  # ")[2]
+        statements.append(Statement(ast.unparse(target), text, subject, names_in(text)))
+    equations = [s.target for s in statements if s.target.startswith("eq")]
+    return statements, tuple(equations), unknowns
+
+
+@cache
+def spelling(name: str) -> Spelling:
+    """Return the spelling of a name in `NAMES`."""
+    reading, _, _ = _read("reading")
+    own, equations, unknowns = _read(name)
+    results, _, _ = _read("results")
+    targets = {statement.target for statement in (*reading, *own)}
+    results = [s for s in results if s.target != "MUC" or "muc" in targets]
+    statements = (*reading, *own, *results)
+    return Spelling(
+        statements, len(reading), len(reading) + len(own), tuple(equations), tuple(unknowns)
+    )

@@ -1,0 +1,78 @@
+"""A comparison in words, as JSON and as a JUnit report."""
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
+
+if TYPE_CHECKING:
+    from .types import Cause, Comparison, Disagreement
+
+SCHEMA = "impact88/compare/2"
+
+
+def cause_sentences(cause: "Cause") -> list[str]:
+    """Return a cause's sentence, and those of other mistakes with the same numbers."""
+    where = f" {cause.where}" if cause.where else ""
+    lines = [f"{cause.edit}{where}"]
+    lines += [f"  or: {other}" for other in cause.alternatives]
+    rows = f"explains {cause.rows} of {cause.of} rows that disagree in {', '.join(cause.results)}"
+    rest = f"; {cause.unexplained} remain unexplained" if cause.unexplained else ""
+    return [*lines, f"  {rows}{rest}"]
+
+
+def disagreement_line(item: "Disagreement") -> str:
+    """Return how a result disagrees."""
+    where = f" {item.where}" if item.where else ""
+    return (
+        f"{item.result:<5}{item.rows:>9} of {item.compared} rows{where}; most in row {item.row}: "
+        f"{item.theirs[:30]}, should be {item.ours:.12g} (relative difference {item.relative:.2g})"
+    )
+
+
+def as_text(comparison: "Comparison") -> str:
+    """Return a comparison as lines of text."""
+    verdict = "PASSED" if comparison.passed else "NOT PASSED"
+    lines = [
+        f"{verdict}: {comparison.rows} rows, {comparison.agreeing} agree, "
+        f"{comparison.differing} disagree"
+    ]
+    lines += list(comparison.notes)
+    if comparison.differing:
+        lines += ["", "Likely cause" if comparison.causes else "No cause was found."]
+        for cause in comparison.causes:
+            lines += [f"  {line}" for line in cause_sentences(cause)]
+        lines += ["", "Results that disagree"]
+        lines += [f"  {disagreement_line(item)}" for item in comparison.disagreements]
+    for reason, ids in comparison.kit.get("failed", {}).items():
+        shown = ", ".join(ids[:5]) + ", ..." * (len(ids) > 5)
+        lines.append(f"{len(ids)} vectors: {reason} ({shown})")
+    if comparison.kit:
+        kit = comparison.kit
+        lines.append(f"kit {kit['id']}: {kit['passed']} of {kit['vectors']} vectors pass")
+    return "\n".join(lines)
+
+
+def as_json(comparison: "Comparison") -> dict[str, Any]:
+    """Return a comparison as JSON types, with the number of their form."""
+    fields = asdict(comparison)
+    for entry, cause in zip(fields["causes"], comparison.causes, strict=True):
+        entry["unexplained"] = cause.unexplained
+    return json.loads(json.dumps({"schema": SCHEMA, **fields}))  # type: ignore[no-any-return]
+
+
+def as_junit(comparison: "Comparison", name: str) -> str:
+    """Return a JUnit report: a test of the rows that agree, one for each row or vector that fails."""
+    causes = "; ".join(f"{c.edit} {c.where}".strip() for c in comparison.causes)
+    failures = {f"row {row}": causes or "no cause found" for row in comparison.differing_rows}
+    for reason, ids in comparison.kit.get("failed", {}).items():
+        failures |= {f"vector {label}": reason for label in ids}
+    if not comparison.passed and not failures:
+        failures["table"] = "; ".join(comparison.notes) or "nothing could be compared"
+    cases = [f"<testcase name={quoteattr(f'{comparison.agreeing} rows agree')}/>"]
+    cases += [
+        f"<testcase name={quoteattr(title)}><failure message={quoteattr(says)}/></testcase>"
+        for title, says in failures.items()
+    ]
+    head = f"<testsuite name={quoteattr(name)} tests='{len(cases)}' failures='{len(failures)}'>"
+    return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', head, *cases, "</testsuite>", ""])
