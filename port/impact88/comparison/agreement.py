@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.closedform.solve import solve
+from ..mechanics.solve import solve
 from ..names import RESULTS
 from .evaluation import Floats, Program
 from .spellings import COLUMNS, VELOCITIES
@@ -29,6 +29,8 @@ STEP = 2.0**-30  # of a change whose effect is scaled to one unit in the last pl
 STRIP = 4096  # scenes at a time: about a hundred arrays stay in the cache
 LARGEST_BODY = 1e200  # in place of an infinite mass, whose products have no value
 ELIMINATION_STEPS = 2.0**6  # roundings of an entry of six equations
+IMPULSES = {"PN": "Pn", "PT": "Pt", "PM": "Pm"}
+"""Results that follow from the velocities, and the impulses that the velocities follow from."""
 COMPARED = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
 NO_ANSWER_NEEDED = 32 | 64  # bits of STATUS: nearly singular, not finite
 
@@ -72,7 +74,7 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
     Reference
         Arrays with a value for each scene.
     """
-    wanted = tuple(dict.fromkeys([*names, *VELOCITIES, "KI", "PN", "PT", "PM", "MUC"]))
+    wanted = tuple(dict.fromkeys([*names, *VELOCITIES, "KI", "KF", "LOSS", "PN", "PT", "PM", "MUC"]))
     values = solve(scene, [*wanted, "STATUS"])
     size = len(scene["UX"])
     bounds = {name: np.empty(size) for name in (*wanted, "gt")}
@@ -112,7 +114,7 @@ def _moved(scene: Mapping[str, Floats], names: Sequence[str]) -> tuple[dict[str,
     targets = [s.target for s in program.statements if s.target not in (*kept, *names)]
     moves = {target: base[target] * (1 + STEP) for target in (*COLUMNS[:-1], *targets)}
     moves["MU"] = np.where(base["MU"] == -10.0, base["MU"], moves["MU"])
-    sums = {name: np.zeros(program.size) for name in (*names, "gt")}
+    sums = {name: np.zeros(program.size) for name in (*names, "gt", *IMPULSES.values())}
     for target, value in moves.items():
         changed = program.propagate({target: value})
         for name, total in sums.items():
@@ -124,6 +126,8 @@ def _moved(scene: Mapping[str, Floats], names: Sequence[str]) -> tuple[dict[str,
         for name, total in sums.items():
             if name != target and changed[name] is not base[name]:
                 total += np.abs(changed[name] - base[name])
+    for name, impulse in IMPULSES.items():  # a program may have it from either
+        sums[name] = np.fmax(sums[name], sums.pop(impulse))
     factor = SAFETY * EPSILON / STEP
     return {name: total * factor for name, total in sums.items()}, base["gt"]
 
@@ -140,7 +144,9 @@ def _scales(scene: Mapping[str, Floats], values: Mapping[str, Floats]) -> dict[s
     impulse = np.hypot(values["PN"], values["PT"])
     turning = largest(values["PM"], impulse * scene["DA"], impulse * scene["DB"])
     ratio = largest(1.0, values["MUC"])
-    kinds = {"W": spin, "K": values["KI"], "EL": values["KI"], "L": 100.0, "MU": ratio}
+    energy = largest(values["KI"], values["KF"])
+    loss = largest(100.0, values["LOSS"])
+    kinds = {"W": spin, "K": energy, "EL": energy, "L": loss, "MU": ratio}
     kinds |= {"PN": impulse, "PT": impulse, "PM": turning}
     size = len(scene["UX"])
     scales = {}
@@ -156,7 +162,9 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
 
     Notes
     -----
-    Skeel's bound ``|A^-1| (|A| |x| + |b|)`` of Equations 13-18, `ELIMINATION_STEPS` roundings.
+    Skeel's bound ``|A^-1| (|A| |x| + |b|)`` of Equations 13-18, `ELIMINATION_STEPS` roundings. Where
+    one body is far heavier, elimination in a bad order loses as many digits more as their masses or
+    inertias differ by.
     """
     size = len(scene["UX"])
     bounds = np.full((size, 6), np.nan)
@@ -169,11 +177,22 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
         inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
         size_of_terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
         bound = (np.abs(inverse) @ size_of_terms)[..., 0]
+        disparity = _disparity({n: scene[n][part] for n in COLUMNS})[:, None]
+        speeds = np.abs(solution[:, :4]).max(1, keepdims=True)
+        spins = np.abs(solution[:, 4:]).max(1, keepdims=True)
+        bound += disparity * np.concatenate([np.repeat(speeds, 4, 1), np.repeat(spins, 2, 1)], 1)
         bounds[part] = np.where(good[:, None], bound, np.nan)
     allowed = dict(zip(VELOCITIES, (ELIMINATION_STEPS * EPSILON * bounds).T, strict=True))
     return {name: allowed[name] for name in names if name in allowed} | _follow(
         scene, allowed, [name for name in names if name not in allowed]
     )
+
+
+def _disparity(scene: Mapping[str, Floats]) -> Floats:
+    """Return the ratio of the masses or of the inertias, the larger to the smaller."""
+    masses = np.fmax(scene["MA"] / scene["MB"], scene["MB"] / scene["MA"])
+    inertias = np.fmax(scene["IA"] / scene["IB"], scene["IB"] / scene["IA"])
+    return np.fmax(masses, np.where(scene["M"] == 4.0, 0.0, inertias))
 
 
 def _follow(

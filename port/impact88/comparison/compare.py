@@ -33,7 +33,8 @@ from .types import Cause, Comparison, Disagreement
 MAX_SAMPLE = 80  # rows of each kind in a search, and as many kept out of it
 MAX_ROWS_LISTED = 1000
 ROUNDINGS = 30.0  # bounds by which a mistake's numbers may be off
-MAGNIFIED = 30.0  # a row whose bound is so many times the median tells little of a mistake
+MAX_CANDIDATES = 800  # rows of each kind from which those of a search are taken
+STEADY = 0.1  # of the digits that may be lost: a row in which elimination keeps more tells of a mistake
 MAX_RESULT_CAUSES = 4
 
 
@@ -101,10 +102,10 @@ class _Table:
         self.lost[doubtful[excused]] = True
 
     def relative(self, name: str) -> Floats:
-        """Return differences relative to the scene's largest quantity of the kind."""
-        with np.errstate(all="ignore"):
-            off: Floats = np.abs(self.theirs[name] - self.ours[name]) / self.reference.scales[name]
-        return np.where(self.misfit[name], np.nan_to_num(off, posinf=np.finfo(float).max), 0.0)
+        """Return differences relative to the largest quantity of the kind, theirs included."""
+        size = np.fmax(self.reference.scales[name], np.abs(self.theirs[name]))
+        off: Floats = np.abs(self.theirs[name] - self.ours[name]) / size
+        return np.where(self.misfit[name], off, 0.0)
 
 
 @np.errstate(all="ignore")
@@ -227,9 +228,8 @@ def _causes(table: _Table) -> tuple[Cause, ...]:
 
 def _wide_limit(table: _Table, name: str) -> Floats:
     """Return how far off the numbers of a program with a mistake may be."""
-    rounding = np.fmax(
-        ROUNDINGS * table.reference.bounds[name], LOST_DIGITS * table.reference.scales[name] / 10
-    )
+    size = np.fmax(table.reference.scales[name], np.abs(table.theirs[name]))
+    rounding = np.fmax(ROUNDINGS * table.reference.bounds[name], LOST_DIGITS * size / 10)
     return table.units[name] / 2 + rounding
 
 
@@ -237,15 +237,13 @@ def _samples(
     table: _Table, limits: Mapping[str, Floats], names: Sequence[str]
 ) -> tuple[Sample, Sample]:
     """Return the rows of a search, and those kept out of it, where rounding is not magnified."""
-    velocities = [n for n in VELOCITIES if n in names] or list(names)
-    ref = table.reference
-    size = np.nanmax([ref.bounds[n] / ref.scales[n] for n in velocities], 0)
-    good = ~(size > MAGNIFIED * np.nanmedian(size))
     wrong = np.any([table.misfit[n] for n in names], 0)
-    agreeing = table.agreeing & ~wrong
-    if (wrong & good).sum() < min(MIN_HELD_OUT, wrong.sum()):
-        good[:] = True
-    kinds = [_spread(np.flatnonzero(x & good), 2 * MAX_SAMPLE) for x in (wrong, agreeing)]
+    kinds = []
+    for kind in (wrong, table.agreeing & ~wrong):
+        rows = _spread(np.flatnonzero(kind), MAX_CANDIDATES)
+        steady = rows[_is_steady(table, rows, names)]
+        rows = steady if steady.size >= min(2 * MIN_HELD_OUT, rows.size) else rows
+        kinds.append(_spread(rows, 2 * MAX_SAMPLE))
     parts = []
     for offset in (0, 1):
         rows = [
@@ -261,6 +259,15 @@ def _samples(
             )
         )
     return parts[0], parts[1]
+
+
+def _is_steady(table: _Table, rows: Any, names: Sequence[str]) -> Bools:
+    """Return whether rounding is not magnified in rows, whatever the method."""
+    scene = {name: table.scene[name][rows] for name in COLUMNS}
+    judged = [n for n in VELOCITIES if n in names] or list(names)
+    bounds = elimination_bounds(scene, judged)
+    sizes = [bounds[n] / np.fmax(table.reference.scales[n][rows], 1e-300) for n in judged]
+    return ~(np.max(sizes, 0) > STEADY * LOST_DIGITS)
 
 
 def _mistakes(table: _Table, limits: Mapping[str, Floats]) -> tuple[Cause, ...]:

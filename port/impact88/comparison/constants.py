@@ -1,5 +1,6 @@
 """Fit a constant that has a wrong value: each row gives its own, and the rows must agree."""
 
+import ast
 from collections.abc import Callable, Mapping
 from math import pi
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -8,8 +9,8 @@ import numpy as np
 
 from .conditions import roundest
 from .evaluation import Edit, Floats, Program, evaluate, stack
-from .mutants import HOLE, sites
-from .spellings import COLUMNS, NAMES, VELOCITIES, spelling
+from .mutants import sites, slot_name
+from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
 
 if TYPE_CHECKING:
     from .diagnosis import Sample
@@ -65,6 +66,7 @@ class Form(NamedTuple):
 
 FACTOR = Form(lambda x, k: x * k, "{0} * {1}", 1.0, "multiplied by {}")
 TERM = Form(lambda x, k: x + k, "{0} + {1}", 0.0, "increased by {}")
+CONSTANT = Form(lambda x, k: k + 0 * x, "{1}", 0.5, "always {}")
 LIMIT = Form(
     lambda x, k: np.sign(x) * k,
     "where({0} == -10, {0}, maximum(minimum({0}, {1}), -{1}))",
@@ -124,7 +126,7 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     places: dict[str, dict[str, str]] = {}
     for site in sites(program.name, part):
         (target, *more), expression = site.targets, site.expressions[0]
-        if not more and target not in reading and expression not in VELOCITIES:
+        if not more and len(site.expressions) == 1 and target not in reading and expression not in VELOCITIES:
             places.setdefault(target, {})[site.holes[0]] = expression
     edits = []
     for target, expressions in places.items():
@@ -132,7 +134,7 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
         values = {hole: evaluate(text, scope) for hole, text in expressions.items()}
         values = {h: v for h, v in values.items() if np.ndim(v) < 2 and np.size(v) > 1}
         values = {h: v for h, v in values.items() if v.dtype == float}
-        for form in (FACTOR, TERM) if values else ():
+        for form in (FACTOR, TERM, CONSTANT) if values else ():
             trial = _statement_trial(program, target, values, form)
             constants = _fit(sample, trial, form, len(values))
             for hole, constant in zip(values, constants, strict=True):
@@ -140,10 +142,10 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
                     number, known = _written(constant, form)
                     expected = expressions[hole]
                     written = form.text.format(f"({expected})", number)
-                    changes = {target: hole.replace(HOLE, f"({written})")}
+                    changes = {target: hole.replace(slot_name(0), f"({written})")}
                     rank = RANK_KNOWN if known else RANK
-                    written = form.text.format(expected, number) + known
-                    edits.append(Edit("", changes, rank, written, expected))
+                    written = ast.unparse(parse(written)) + known
+                    edits.append(Edit("", changes, rank, (written,), (expected,)))
     return edits
 
 
@@ -155,7 +157,7 @@ def _statement_trial(
 
     def trial(k: Floats) -> Mapping[str, Any]:
         alternatives = [
-            evaluate(hole, {**scope, HOLE: form.apply(value, row)})
+            evaluate(hole, {**scope, slot_name(0): form.apply(value, row)})
             for (hole, value), row in zip(values.items(), k, strict=True)
         ]
         return program.propagate({target: stack(alternatives, program.size)})
@@ -184,7 +186,7 @@ def _fit(sample: "Sample", trial: Trial, form: Form, count: int) -> list[float]:
     k = np.full(shape, form.neutral)
     new = k + FIRST_STEP
     before = misfit(k)
-    for _ in range(ITERATIONS):
+    for iteration in range(ITERATIONS):
         after = misfit(new)
         slope = after - before
         good = np.isfinite(slope) & np.isfinite(after)
@@ -192,6 +194,8 @@ def _fit(sample: "Sample", trial: Trial, form: Form, count: int) -> list[float]:
         step = step * (new - k)
         k, before = new, after
         new = np.where(np.isfinite(step), new - step, new)
+        if not iteration:  # what does not depend on the constant tells nothing of it
+            new[~np.any(good & (slope != 0), 0)] = np.nan
     return [_agreed(row, form) for row in new]
 
 

@@ -170,7 +170,7 @@ def search(
         for site, options in groups.values():
             fits = sample.fits(full.propagate(site.values(full, options)), len(options))
             for place, rows in zip(options, fits, strict=True):
-                candidates.append(Candidate(name, (*base, site.edit(name, place)), rows))
+                candidates.append(Candidate(name, (*base, site.edit(place)), rows))
         if name == NAMES[0] or base:
             for edit in _model_edits(name, part):
                 if edited.isdisjoint(edit.changes):

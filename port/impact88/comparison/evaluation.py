@@ -45,8 +45,8 @@ class Edit(NamedTuple):
     says: str
     changes: Mapping[str, str]
     rank: int = 0
-    written: str = ""
-    expected: str = ""
+    written: tuple[str, ...] = ()
+    expected: tuple[str, ...] = ()
 
 
 @cache
@@ -153,7 +153,8 @@ class Program:
         for statement in self.statements[self._first :]:
             target = statement.target
             text = texts.get(target, statement.text)
-            if target not in fixed and (target in texts or not dirty.isdisjoint(statement.reads)):
+            is_stale = target in texts or target not in names
+            if target not in fixed and (is_stale or not dirty.isdisjoint(statement.reads)):
                 scope = {**names, **self.basis} if target in linear else names
                 names[target] = evaluate(text, scope)
                 dirty.add(target)

@@ -16,7 +16,7 @@ from ..names import RESULTS
 from .evaluation import Edit, Program, evaluate, stack, statement_of
 from .spellings import COLUMNS, VELOCITIES, Statement, parse, spelling
 
-HOLE = "_"
+SLOT = re.compile(r"SLOT\d+")
 RANK_MODEL = 0  # a law or a convention with a name
 RANK_NEAR = 2  # an operator, a sign, a name of one other letter
 RANK_FAR = 4  # any other name
@@ -40,7 +40,7 @@ PATTERNS = {
     "a == b": "a != b; a < b; a > b; a <= b; a >= b",
 }
 """An expression -> what may be written instead; single letters stand for any expression."""
-ANY = "-a; 0; 1; 2 * a; a / 2; a * a; abs(a); 1 / a; sqrt(abs(a)); a * pi / 180; a * 180 / pi; 1 - a; 1 + a"
+ANY = "-a; 0; 1; 2; 2 * a; a / 2; a * a; abs(a); 1 / a; sqrt(abs(a)); a * pi / 180; a * 180 / pi; 1 - a; 1 + a"
 LINEAR = "-a; 0; 2 * a; a / 2"
 CONDITIONS = ("point", "pivot", "stick")
 CONSTANTS = "0; 1; 2; 3; 4; -1; 0.5; 10; 100; 90; 360"
@@ -67,10 +67,10 @@ class Option(NamedTuple):
 
 
 class Site(NamedTuple):
-    """Expressions of statements (``targets``), with their options.
+    """Expressions in statements (``targets``), with what may be written there.
 
-    ``holes`` are the statements with `HOLE` in place of the ``expressions``; ``options`` has a row
-    for each option, with one for each target.
+    ``holes`` are the statements with a slot, "SLOT0", "SLOT1" ..., in place of each of the
+    ``expressions``; ``options`` has a row for each alternative, with an option for each slot.
     """
 
     targets: tuple[str, ...]
@@ -80,24 +80,34 @@ class Site(NamedTuple):
 
     def values(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
         """Return the statements' values, one alternative for each option (that is chosen)."""
-        options = self.options if chosen is None else [self.options[k] for k in chosen]
+        rows = self.options if chosen is None else [self.options[k] for k in chosen]
         values = {}
-        for place, (target, hole) in enumerate(zip(self.targets, self.holes, strict=True)):
+        for target, hole in zip(self.targets, self.holes, strict=True):
             scope = program.scope(target)
-            alternatives = [row[place].value(scope) for row in options]
-            values[target] = evaluate(hole, {**scope, HOLE: stack(alternatives, program.size)})
+            slots = {
+                slot: stack([row[place].value(scope) for row in rows], program.size)
+                for place, slot in enumerate(map(slot_name, range(len(self.expressions))))
+                if slot in hole
+            }
+            values[target] = evaluate(hole, {**scope, **slots})
         return values
 
-    def edit(self, name: str, place: int) -> Edit:
-        """Return an option of a spelling's site as an edit."""
+    def edit(self, place: int) -> Edit:
+        """Return an option as an edit."""
         options = self.options[place]
         texts = [option.text for option in options]
+        slots = {slot_name(k): f"({text})" for k, text in enumerate(texts)}
         changes = {
-            target: re.sub(rf"\b{HOLE}\b", f"({text})", hole)
-            for target, hole, text in zip(self.targets, self.holes, texts, strict=True)
+            target: SLOT.sub(lambda match: slots[match[0]], hole)
+            for target, hole in zip(self.targets, self.holes, strict=True)
         }
-        rank = options[0].rank + (RANK_TWIN if len(self.targets) > 1 else 0)
-        return Edit("", changes, rank, "; ".join(texts), "; ".join(self.expressions))
+        rank = max(option.rank for option in options) + (RANK_TWIN if len(options) > 1 else 0)
+        return Edit("", changes, rank, tuple(texts), self.expressions)
+
+
+def slot_name(place: int) -> str:
+    """Return the name of a slot."""
+    return f"SLOT{place}"
 
 
 def _match(pattern: ast.AST, node: ast.AST, parts: dict[str, str]) -> bool:
@@ -163,44 +173,84 @@ def _nodes(tree: ast.expr) -> list[ast.expr]:
     return [n for n in ast.walk(tree) if isinstance(n, ast.expr) and id(n) not in functions]
 
 
-def _with_hole(text: str, nodes: Sequence[ast.expr]) -> str:
-    """Return a statement's text with a hole in place of some of its nodes."""
+def _with_slots(text: str, nodes: Mapping[ast.expr, int]) -> str:
+    """Return a statement's text with slots in place of nodes."""
     for node in sorted(nodes, key=lambda n: -n.col_offset):
-        text = f"{text[: node.col_offset]}{HOLE}{text[node.end_col_offset :]}"
+        slot = slot_name(nodes[node])
+        text = f"{text[: node.col_offset]}{slot}{text[node.end_col_offset :]}"
     return text
 
 
-def _sites_of(statement: Statement, names: Sequence[str], unknowns: frozenset[str]) -> list[Site]:
-    """Return the sites of one statement: each expression, and equal ones together."""
+def _form(node: ast.expr) -> str:
+    """Return an expression with all names alike."""
+    return re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", ast.unparse(node))
+
+
+def _single_sites(
+    statement: Statement, names: Sequence[str], unknowns: frozenset[str]
+) -> Iterator[Site]:
+    """Yield the sites of one statement: each expression, and equal ones together."""
     groups: dict[str, list[ast.expr]] = {}
     for node in _nodes(parse(statement.text)):
         groups.setdefault(ast.unparse(node), []).append(node)
-    sites = []
     for text, nodes in groups.items():
         options = tuple((option,) for option in _options(nodes[0], names, unknowns))
-        chosen = [[node] for node in nodes] + ([nodes] if len(nodes) > 1 else [])
-        holes = [_with_hole(statement.text, members) for members in chosen]
-        sites += [Site((statement.target,), (hole,), (text,), options) for hole in holes]
-    return sites
+        for chosen in [[node] for node in nodes] + ([nodes] if len(nodes) > 1 else []):
+            hole = _with_slots(statement.text, dict.fromkeys(chosen, 0))
+            yield Site((statement.target,), (hole,), (text,), options)
 
 
-def _twin_sites(statements: Sequence[Statement], unknowns: frozenset[str]) -> list[Site]:
-    """Return the sites of statements of one form: the same mistake at one place in all."""
-    trees = [_nodes(parse(statement.text)) for statement in statements]
-    sites = []
-    for nodes in zip(*trees, strict=True):
-        rows = [_options(node, (), unknowns) for node in nodes]
+def _twin_sites(
+    statements: Sequence[Statement], pairs: Sequence[tuple[str, str]], unknowns: frozenset[str]
+) -> Iterator[Site]:
+    """Yield the sites with the same mistake in expressions of one form, in one or more statements.
+
+    ``pairs`` of names, such as the parts of a vector, may be written for a pair.
+    """
+    nodes = [(s, node) for s in statements for node in _nodes(parse(s.text))]
+    if len(statements) > 1:
+        trees = [[(s, node) for node in _nodes(parse(s.text))] for s in statements]
+        groups = list(zip(*trees, strict=True))
+    else:
+        forms: dict[str, list[tuple[Statement, ast.expr]]] = {}
+        for statement, node in nodes:
+            if not isinstance(node, ast.Name | ast.Constant):
+                forms.setdefault(_form(node), []).append((statement, node))
+        groups = [g for members in forms.values() for g in combinations(members, 2)]
+        groups += [tuple(members) for members in forms.values() if len(members) > 2]
+    for group in groups:
+        texts = [ast.unparse(node) for _, node in group]
+        if len(statements) == 1 and len(set(texts)) < len(texts):
+            continue
+        rows = [_options(node, (), unknowns) for _, node in group]
         if len({tuple(option.template for option in row) for row in rows}) > 1:
             continue
-        sites.append(
-            Site(
-                tuple(s.target for s in statements),
-                tuple(_with_hole(s.text, [n]) for s, n in zip(statements, nodes, strict=True)),
-                tuple(map(ast.unparse, nodes)),
-                tuple(zip(*rows, strict=True)),
-            )
-        )
-    return sites
+        options = list(zip(*rows, strict=True))
+        if tuple(texts) in pairs:
+            options += [
+                tuple(Option("a", {"a": name}) for name in pair)
+                for pair in pairs
+                if pair != tuple(texts)
+            ]
+        holes = []
+        for statement in statements:
+            slots = {node: k for k, (s, node) in enumerate(group) if s is statement}
+            holes.append(_with_slots(statement.text, slots))
+        targets = tuple(statement.target for statement in statements)
+        yield Site(targets, tuple(holes), tuple(texts), tuple(options))
+
+
+def _pairs(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the names that are parts of a vector, or the same of A and B."""
+    pairs = []
+    for name in names:
+        for first, second in ("xy", "nt", "ab", "XY", "AB"):
+            for place in [k for k, letter in enumerate(name) if letter == first]:
+                twin = name[:place] + second + name[place + 1 :]
+                if twin in names:
+                    pairs.append((name, twin))
+    pairs += [("UX", "VX"), ("UY", "VY"), ("c", "s")]
+    return list(dict.fromkeys(pairs + [(second, first) for first, second in pairs]))
 
 
 @cache
@@ -217,16 +267,16 @@ def sites(name: str, part: str) -> tuple[Site, ...]:
         linear = statement.reads & unknowns
         usable = [n for n in names if n not in CONDITIONS]
         usable += [n for n in text.unknowns if linear]
-        all_sites += _sites_of(statement, list(dict.fromkeys(usable)), unknowns)
-        form = re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", statement.text)
-        forms.setdefault(form, []).append(statement)
+        all_sites += _single_sites(statement, list(dict.fromkeys(usable)), unknowns)
+        all_sites += _twin_sites([statement], (), unknowns)
+        forms.setdefault(_form(parse(statement.text)), []).append(statement)
         if not linear:
             names.append(statement.target)
+    pairs = _pairs(names)
     for members in forms.values():
-        groups = list(combinations(members, 2))
-        groups += [tuple(members)] if len(members) > 2 else []  # type: ignore[list-item]
+        groups = [*combinations(members, 2), *([tuple(members)] if len(members) > 2 else [])]
         for group in groups:
-            all_sites += _twin_sites(group, unknowns)
+            all_sites += _twin_sites(group, pairs, unknowns)
     return tuple(site for site in all_sites if site.options)
 
 
@@ -297,12 +347,8 @@ def describe(edit: Edit, name: str) -> str:
     """Return a sentence: what is written in which statement, and what should be."""
     if edit.says:
         return edit.says
-    parts = []
-    written = edit.written.split("; ")
-    expected = edit.expected.split("; ")
-    for target, new, old in zip(edit.changes, written, expected, strict=True):
-        statement = statement_of(name, target)
-        parts.append(
-            f"{statement.subject}: {new}, should be {old}, in {target} = {statement.text}"
-        )
-    return "; and ".join(parts)
+    parts = [f"{new}, should be {old}" for new, old in zip(edit.written, edit.expected, strict=True)]
+    statements = [statement_of(name, target) for target in edit.changes]
+    subjects = " and ".join(dict.fromkeys(statement.subject for statement in statements))
+    places = " and ".join(f"{s.target} = {s.text}" for s in statements)
+    return f"{subjects}: {'; '.join(parts)}; in {places}"

@@ -18,7 +18,8 @@ def statements():
     gn = gx * nx + gy * ny  # closing velocity at the contact point
     gt = gx * tx + gy * ty  # sliding velocity at the contact point
     gw = WA - WB  # relative spin before
-    mu = where(gt > 0, -MU, MU)  # sign rule of MU
+    slide = gx * tx + gy * ty  # sliding velocity in the sign rule of MU
+    mu = where(slide > 0, -MU, MU)  # sign rule of MU
     wan = an / ia  # spin of A by a unit normal impulse
     wat = at / ia  # spin of A by a unit tangential impulse
     wbn = bn / ib  # spin of B by a unit normal impulse

@@ -5,37 +5,33 @@
 
 def statements():
     """Compute them from the columns and the final velocities."""
-    XA = UX - WA * ray  # contact velocity of A before, x
-    YA = UY + WA * rax  # contact velocity of A before, y
-    XB = VX - WB * rby  # contact velocity of B before, x
-    YB = VY + WB * rbx  # contact velocity of B before, y
-    XAF = VAX - WAF * ray  # contact velocity of A after, x
-    YAF = VAY + WAF * rax  # contact velocity of A after, y
-    XBF = VBX - WBF * rby  # contact velocity of B after, x
-    YBF = VBY + WBF * rbx  # contact velocity of B after, y
+    XA = UX + da * sin(ta + pa) * WA  # contact velocity of A before, x
+    YA = UY - da * cos(ta + pa) * WA  # contact velocity of A before, y
+    XB = VX - db * sin(tb + pb) * WB  # contact velocity of B before, x
+    YB = VY + db * cos(tb + pb) * WB  # contact velocity of B before, y
+    XAF = VAX + da * sin(ta + pa) * WAF  # contact velocity of A after, x
+    YAF = VAY - da * cos(ta + pa) * WAF  # contact velocity of A after, y
+    XBF = VBX - db * sin(tb + pb) * WBF  # contact velocity of B after, x
+    YBF = VBY + db * cos(tb + pb) * WBF  # contact velocity of B after, y
     VC = -(c * (XA - XB) + s * (YA - YB))  # closing speed
     VS = E * VC  # separation speed
     sliding = c * (YA - YB) - s * (XA - XB)  # sliding velocity before
     sliding_after = c * (YAF - YBF) - s * (XAF - XBF)  # sliding velocity after
     KI = (
-        MA * (UX**2 + UY**2) + MB * (VX**2 + VY**2) + where(point, 0, ia * WA**2 + ib * WB**2)
-    ) / 2  # initial kinetic energy
+        0.5 * MA * (UX**2 + UY**2)
+        + 0.5 * MB * (VX**2 + VY**2)
+        + where(point, 0, 0.5 * ia * WA**2 + 0.5 * ib * WB**2)
+    )  # initial kinetic energy
     KF = (
-        MA * (VAX**2 + VAY**2) + MB * (VBX**2 + VBY**2) + where(point, 0, ia * WAF**2 + ib * WBF**2)
-    ) / 2  # final kinetic energy
+        0.5 * MA * (VAX**2 + VAY**2)
+        + 0.5 * MB * (VBX**2 + VBY**2)
+        + where(point, 0, 0.5 * ia * WAF**2 + 0.5 * ib * WBF**2)
+    )  # final kinetic energy
     LOSS = 100 * (KI - KF) / KI  # energy loss in percent
     DVA = hypot(VAX - UX, VAY - UY)  # delta-V of A
     DVB = hypot(VBX - VX, VBY - VY)  # delta-V of B
-    PN = where(
-        MA < MB,
-        MA * (c * (VAX - UX) + s * (VAY - UY)),
-        MB * (c * (VX - VBX) + s * (VY - VBY)),
-    )  # normal impulse on A
-    PT = where(
-        MA < MB,
-        MA * (c * (VAY - UY) - s * (VAX - UX)),
-        MB * (c * (VY - VBY) - s * (VX - VBX)),
-    )  # tangential impulse on A
+    PN = MA * (c * (VAX - UX) + s * (VAY - UY))  # normal impulse on A
+    PT = MA * (c * (VAY - UY) - s * (VAX - UX))  # tangential impulse on A
     PM = where(
         point, 0, ia * (WAF - WA) - (rax * s - ray * c) * PN - (rax * c + ray * s) * PT
     )  # moment impulse on A

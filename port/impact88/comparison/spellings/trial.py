@@ -1,44 +1,86 @@
 # mypy: ignore-errors
 # ruff: noqa: F821, F841
-"""Trial impulses: what a unit of each does to the contact velocity, then three equations."""
+"""Trial impulses: what a unit of each does to every velocity, then three equations.
+
+By virtual work the same coefficients make the contact velocities from the velocities: the rows of
+a Jacobian matrix.
+"""
 
 
 def statements():
     """Apply unit impulses one by one, and solve for their sizes."""
-    gx = UX - WA * ray - (VX - WB * rby)  # contact velocity before, x
-    gy = UY + WA * rax - (VY + WB * rbx)  # contact velocity before, y
-    gn = gx * c + gy * s  # closing velocity at the contact point
-    gt = gy * c - gx * s  # sliding velocity at the contact point
-    gw = WA - WB  # relative spin before
+    nax = c  # normal trial impulse, on A, x
+    nay = s  # normal trial impulse, on A, y
+    naw = rax * s - ray * c  # normal trial impulse, torque on A
+    nbx = -c  # normal trial impulse, on B, x
+    nby = -s  # normal trial impulse, on B, y
+    nbw = rby * c - rbx * s  # normal trial impulse, torque on B
+    tax = -s  # tangential trial impulse, on A, x
+    tay = c  # tangential trial impulse, on A, y
+    taw = rax * c + ray * s  # tangential trial impulse, torque on A
+    tbx = s  # tangential trial impulse, on B, x
+    tby = -c  # tangential trial impulse, on B, y
+    tbw = -rbx * c - rby * s  # tangential trial impulse, torque on B
+    maw = 1  # trial moment, on A
+    mbw = -1  # trial moment, on B
+    gn = (
+        nax * UX + nay * UY + naw * WA + nbx * VX + nby * VY + nbw * WB
+    )  # closing velocity at the contact point
+    gt = (
+        tax * UX + tay * UY + taw * WA + tbx * VX + tby * VY + tbw * WB
+    )  # sliding velocity at the contact point
+    gw = maw * WA + mbw * WB  # relative spin before
     mu = where(gt > 0, -MU, MU)  # sign rule of MU
-    jan = (rax * s - ray * c) / ia  # spin of A by a normal trial impulse
-    jat = (rax * c + ray * s) / ia  # spin of A by a tangential trial impulse
-    jbn = -(rbx * s - rby * c) / ib  # spin of B by a normal trial impulse
-    jbt = -(rbx * c + rby * s) / ib  # spin of B by a tangential trial impulse
-    fx = c / MA + c / MB - jan * ray + jbn * rby  # velocity by a normal trial impulse, x
-    fy = s / MA + s / MB + jan * rax - jbn * rbx  # velocity by a normal trial impulse, y
-    hx = -s / MA - s / MB - jat * ray + jbt * rby  # velocity by a tangential trial impulse, x
-    hy = c / MA + c / MB + jat * rax - jbt * rbx  # velocity by a tangential trial impulse, y
-    qx = -ray / ia - rby / ib  # velocity by a trial moment, x
-    qy = rax / ia + rbx / ib  # velocity by a trial moment, y
-    nn = fx * c + fy * s  # normal velocity by a normal trial impulse
-    nt = hx * c + hy * s  # normal velocity by a tangential trial impulse
-    nm = qx * c + qy * s  # normal velocity by a trial moment
-    tn = fy * c - fx * s  # tangential velocity by a normal trial impulse
-    tt = hy * c - hx * s  # tangential velocity by a tangential trial impulse
-    tm = qy * c - qx * s  # tangential velocity by a trial moment
-    wn = jan - jbn  # relative spin by a normal trial impulse
-    wt = jat - jbt  # relative spin by a tangential trial impulse
-    wm = 1 / ia + 1 / ib  # relative spin by a trial moment
+    ua = 1 / MA  # inverse mass of A
+    ub = 1 / MB  # inverse mass of B
+    ja = 1 / ia  # inverse inertia of A
+    jb = 1 / ib  # inverse inertia of B
+    nn = (
+        nax * ua * nax
+        + nay * ua * nay
+        + naw * ja * naw
+        + nbx * ub * nbx
+        + nby * ub * nby
+        + nbw * jb * nbw
+    )  # normal velocity by a normal trial impulse
+    nt = (
+        nax * ua * tax
+        + nay * ua * tay
+        + naw * ja * taw
+        + nbx * ub * tbx
+        + nby * ub * tby
+        + nbw * jb * tbw
+    )  # normal velocity by a tangential trial impulse
+    nm = naw * ja * maw + nbw * jb * mbw  # normal velocity by a trial moment
+    tn = (
+        tax * ua * nax
+        + tay * ua * nay
+        + taw * ja * naw
+        + tbx * ub * nbx
+        + tby * ub * nby
+        + tbw * jb * nbw
+    )  # tangential velocity by a normal trial impulse
+    tt = (
+        tax * ua * tax
+        + tay * ua * tay
+        + taw * ja * taw
+        + tbx * ub * tbx
+        + tby * ub * tby
+        + tbw * jb * tbw
+    )  # tangential velocity by a tangential trial impulse
+    tm = taw * ja * maw + tbw * jb * mbw  # tangential velocity by a trial moment
+    wn = maw * ja * naw + mbw * jb * nbw  # relative spin by a normal trial impulse
+    wt = maw * ja * taw + mbw * jb * tbw  # relative spin by a tangential trial impulse
+    wm = maw * ja * maw + mbw * jb * mbw  # relative spin by a trial moment
     eq15 = nn * Pn + nt * Pt + nm * Pm + (1 + E) * gn  # restitution, Equation 15
     eq16 = where(pivot, tn * Pn + tt * Pt + tm * Pm + gt, Pt - mu * Pn)  # friction, Equation 16
     eq18 = where(
         point, Pm, (1 - em) * (wn * Pn + wt * Pt + wm * Pm + gw) - em * wm * Pm
     )  # moment equation, Equation 18
     Pn, Pt, Pm = solve(eq15, eq16, eq18)
-    VAX = UX + (Pn * c - Pt * s) / MA  # final velocity of A, x
-    VAY = UY + (Pn * s + Pt * c) / MA  # final velocity of A, y
-    VBX = VX - (Pn * c - Pt * s) / MB  # final velocity of B, x
-    VBY = VY - (Pn * s + Pt * c) / MB  # final velocity of B, y
-    WAF = WA + jan * Pn + jat * Pt + Pm / ia  # final spin of A
-    WBF = WB + jbn * Pn + jbt * Pt - Pm / ib  # final spin of B
+    VAX = UX + ua * (nax * Pn + tax * Pt)  # final velocity of A, x
+    VAY = UY + ua * (nay * Pn + tay * Pt)  # final velocity of A, y
+    VBX = VX + ub * (nbx * Pn + tbx * Pt)  # final velocity of B, x
+    VBY = VY + ub * (nby * Pn + tby * Pt)  # final velocity of B, y
+    WAF = WA + ja * (naw * Pn + taw * Pt + maw * Pm)  # final spin of A
+    WBF = WB + jb * (nbw * Pn + tbw * Pt + mbw * Pm)  # final spin of B
