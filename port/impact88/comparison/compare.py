@@ -24,8 +24,11 @@ from .diagnosis import (
     explain,
     information,
 )
+from ..errors import UserError
 from .evaluation import Floats, Program
+from .kit import Answers, check_kit
 from .numbers import numbers, units
+from .reading import read_table, scene_columns
 from .rows import cut_digits, other_rows, single_precision
 from .spellings import COLUMNS, VELOCITIES
 from .types import Cause, Comparison, Disagreement
@@ -41,12 +44,16 @@ MAX_RESULT_CAUSES = 4
 class _Table:
     """Another program's results beside the reference."""
 
-    def __init__(self, scene: Mapping[str, Floats], columns: Mapping[str, Any]) -> None:
+    def __init__(
+        self, scene: Mapping[str, Floats], columns: Mapping[str, Any], factors: Mapping[str, float]
+    ) -> None:
         self.scene = scene
         self.names = [name for name in COMPARED if name in columns]
         self.texts = columns
-        self.theirs = {name: numbers(columns[name]) for name in self.names}
+        scales = {name: factors.get(name, 1.0) for name in self.names}
+        self.theirs = {name: numbers(columns[name]) * k for name, k in scales.items()}
         self.units = units({name: columns[name] for name in self.names})
+        self.units = {name: unit * abs(scales[name]) for name, unit in self.units.items()}
         self.size = len(scene["UX"])
         self.empty = [n for n in self.names if not np.isfinite(self.theirs[n]).any()]
         self.reference = reference(scene, self.names)
@@ -109,29 +116,81 @@ class _Table:
 
 
 @np.errstate(all="ignore")
-def compare_columns(
-    scene: Mapping[str, Floats], columns: Mapping[str, Any], causes: bool = True
+def compare(
+    table: Any,
+    *,
+    kit: str | None = None,
+    values: Mapping[str, Any] | None = None,
+    factors: Mapping[str, float] | None = None,
+    causes: bool = True,
 ) -> Comparison:
-    """Compare columns of results (texts or numbers) with the reference of their scenes.
+    """Compare another program's results with the reference, and name the mistake.
 
     Parameters
     ----------
-    scene : mapping of str to ndarray
-        The 21 columns of the scene.
-    columns : mapping of str to array_like
-        Results by name: texts, whose digits count, or numbers.
+    table : path, mapping of columns, data frame or sequence of mappings
+        The scenes and the results, by `impact88.names`; a file ends in ``.csv`` or ``.jsonl``.
+        Texts are judged by the digits that they are written with.
+    kit : str, optional
+        The id or folder of a kit of test vectors that the table answers. The scenes are the kit's,
+        and every vector must be answered.
+    values : mapping of str to float, optional
+        Values of columns of the scene that the table lacks.
+    factors : mapping of str to float, optional
+        What converts a column to consistent units (length, mass, time): ``{"VAX": 22 / 15}``.
     causes : bool, default True
-        Look for the mistakes.
+        Look for the mistakes where rows disagree.
 
     Returns
     -------
     Comparison
+        The verdict, how results disagree, and the mistakes that explain it.
+
+    Raises
+    ------
+    UserError
+        For a table that cannot be used.
+
+    Notes
+    -----
+    A number agrees within the rounding of a careful program or half its last digit (`agreement`).
+    A mistake is an edit of the equations that gives the rows kept out of the search (`diagnosis`).
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> comparison = impact88.compare([{**scene, "VAX": -13.2631}], causes=False)
+    >>> comparison.passed, comparison.differing
+    (True, 0)
     """
-    table = _Table(scene, columns)
+    columns = read_table(table)
+    factors = factors or {}
+    if kit is not None:
+        check_kit(kit)
+        answers = Answers(columns)
+        comparison, wrong = compare_columns(answers.scene, answers.results, factors, causes)
+        verdict = answers.verdict(wrong)
+        passed = not (verdict["failed"] or verdict["stray"])
+        return replace(comparison, passed=passed, kit=verdict)
+    scene = scene_columns(columns, values or {})
+    scene = {name: column * factors.get(name, 1.0) for name, column in scene.items()}
+    if not any(name in columns for name in COMPARED):
+        raise UserError(f"no results to compare; expected some of {' '.join(COMPARED)}")
+    return compare_columns(scene, columns, factors, causes)[0]
+
+
+def compare_columns(
+    scene: Mapping[str, Floats],
+    columns: Mapping[str, Any],
+    factors: Mapping[str, float],
+    causes: bool = True,
+) -> tuple[Comparison, Bools]:
+    """Return the comparison of columns of results with their scenes, and the rows that disagree."""
+    table = _Table(scene, columns, factors)
     places = np.flatnonzero(table.wrong)
+    complete = table.agreeing.any() and not (places.size or table.missing.any() or table.empty)
     comparison = Comparison(
-        passed=bool(table.agreeing.any())
-        and not (places.size or table.missing.any() or table.empty),
+        passed=bool(complete),
         rows=table.size,
         agreeing=int(table.agreeing.sum()),
         differing=int(places.size),
@@ -139,9 +198,10 @@ def compare_columns(
         differing_rows=tuple((places[:MAX_ROWS_LISTED] + 1).tolist()),
     )
     if not places.size:
-        return comparison
+        return comparison, table.wrong
     found = _causes(table) if causes else ()
-    return replace(comparison, causes=found, disagreements=_disagreements(table, bool(found)))
+    disagreements = _disagreements(table, bool(found))
+    return replace(comparison, causes=found, disagreements=disagreements), table.wrong
 
 
 def _notes(table: _Table) -> tuple[str, ...]:

@@ -1,0 +1,134 @@
+"""Other programs' tables: CSV, JSON Lines, and what Python programs have in memory.
+
+Cells stay as they are written, because their digits count.
+"""
+
+import csv
+import io
+import json
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..errors import UserError, quoted
+from ..files import read_text
+from ..names import DEFAULT_M, missing
+from .evaluation import Floats
+from .numbers import numbers
+from .spellings import COLUMNS
+
+BODY_COLUMNS = ("EM", "DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB")
+"""Columns that point masses do not use."""
+Columns = dict[str, Any]
+
+
+def read_table(table: Any) -> Columns:
+    """Return a table's columns by heading.
+
+    Parameters
+    ----------
+    table : path, mapping of columns, data frame or sequence of mappings
+        A file ending in ``.csv`` or ``.jsonl``, or the table itself.
+
+    Returns
+    -------
+    dict of str to sequence
+        Columns of one length.
+
+    Raises
+    ------
+    UserError
+        For a table that cannot be read.
+    """
+    if isinstance(table, str | os.PathLike):
+        columns = _read_file(os.fspath(table))
+    elif isinstance(table, Mapping):
+        columns = {str(name): np.atleast_1d(np.asarray(c)) for name, c in table.items()}
+    elif hasattr(table, "columns"):
+        columns = {str(name): np.asarray(table[name]) for name in table.columns}
+    elif isinstance(table, Sequence):
+        columns = _columns_of(list(table), "table")
+    else:
+        raise UserError(f"{quoted(table)} is no table; expected a path, columns or rows")
+    size = max((len(column) for column in columns.values()), default=0)
+    for name, column in columns.items():
+        if len(column) == 1:
+            columns[name] = np.repeat(np.asarray(column), size)
+        elif len(column) != size:
+            raise UserError(f"column {quoted(name)} has {len(column)} rows; expected {size}")
+    if not size:
+        raise UserError("the table has no rows")
+    return columns
+
+
+def _read_file(path: str) -> Columns:
+    ending = os.path.splitext(path)[1].lower()
+    text = read_text(path).removeprefix("\ufeff")
+    if ending == ".csv":
+        return _read_csv(text, path)
+    if ending not in (".jsonl", ".ndjson"):
+        raise UserError("is not a table; expected a name ending in .csv or .jsonl", path)
+    rows = []
+    for line, row in enumerate(text.splitlines(), 1):
+        try:
+            rows += [json.loads(row, parse_float=str, parse_int=str)] if row.strip() else []
+        except (ValueError, RecursionError) as error:
+            raise UserError(f"is not JSON: {error}", f"{path}, line {line}") from None
+    return _columns_of(rows, path)
+
+
+def _read_csv(text: str, path: str) -> Columns:
+    try:
+        header, *rows = [row for row in csv.reader(io.StringIO(text)) if row] or [[]]
+    except csv.Error as error:
+        raise UserError(f"cannot be read: {error}", path) from None
+    names = [name.strip() for name in header]
+    for name in names:
+        if names.count(name) > 1:
+            raise UserError(f"has two columns {quoted(name)}", path)
+    for place, row in enumerate(rows, 1):
+        if len(row) != len(names):
+            message = f"has {len(row)} cells; expected {len(names)}, as the headings have"
+            raise UserError(message, f"{path}, row {place}")
+    return {name: np.array([row[k] for row in rows]) for k, name in enumerate(names)}
+
+
+def _columns_of(rows: list[Any], where: str) -> Columns:
+    """Return the columns of rows that are mappings; a missing cell is empty."""
+    for place, row in enumerate(rows, 1):
+        if not isinstance(row, Mapping):
+            raise UserError("is no object of names and numbers", f"{where}, row {place}")
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    cells = {name: [row.get(name, "") for row in rows] for name in names}
+    return {name: np.array(["" if x is None else str(x) for x in c]) for name, c in cells.items()}
+
+
+def scene_columns(columns: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Floats]:
+    """Return the 21 columns of the scene as numbers.
+
+    Parameters
+    ----------
+    columns : mapping
+        A table's columns.
+    values : mapping
+        Values of columns that the table lacks.
+
+    Raises
+    ------
+    UserError
+        For missing columns.
+    """
+    size = len(next(iter(columns.values())))
+    scene = {}
+    for name in ("M", *COLUMNS[:-1]):
+        if name in columns:
+            scene[name] = numbers(columns[name])
+        elif name in values or name == "M":
+            scene[name] = np.full(size, float(values.get(name, DEFAULT_M)))
+        elif name in BODY_COLUMNS and (scene["M"] == 4.0).all():
+            scene[name] = np.full(size, 1.0 if name in ("IA", "IB") else 0.0)
+    if absent := [name for name in COLUMNS if name not in scene]:
+        raise UserError(f"{missing(absent)}; expected the columns of the scene beside the results")
+    return scene
