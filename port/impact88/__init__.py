@@ -15,7 +15,7 @@ Old printouts and other programs
                         check a printout against the program's own, and explain differences
     read_printouts, Printout    the printouts in a text, number by number
     oracle              complete reference results of scenes, to check other programs with
-    compare, Comparison     another program's table compared with this one's results
+    compare, Comparison, Cause      another program's table compared with the reference
 
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
@@ -62,9 +62,10 @@ if TYPE_CHECKING:
     from .collision.casescene import Scene as Scene
     from .collision.casescene import sample as sample
     from .collision.uncertain import Uncertain as Uncertain
-    from .conformance.comparison.compare import Comparison as Comparison
-    from .conformance.comparison.compare import compare as compare
-    from .conformance.comparison.oracle import oracle as oracle
+    from .comparison.compare import compare as compare
+    from .comparison.oracle import oracle as oracle
+    from .comparison.types import Cause as Cause
+    from .comparison.types import Comparison as Comparison
     from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
     from .library import accelerated as accelerated
@@ -90,8 +91,9 @@ _LAZY = {
         "casework.chapter.barrier": "barrier",
         "casework.chapter.colinear": "colinear colinear_inverse",
         "casework.chapter.deltav": "delta_v",
-        "conformance.comparison.compare": "Comparison compare",
-        "conformance.comparison.oracle": "oracle",
+        "comparison.compare": "compare",
+        "comparison.oracle": "oracle",
+        "comparison.types": "Cause Comparison",
         "apple.emulator.emulator": "Applesoft",
         "errors": "PlausibilityWarning UserError",
         "casework.figures.canvas": "Svg",

@@ -74,17 +74,17 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
     Reference
         Arrays with a value for each scene.
     """
-    wanted = tuple(dict.fromkeys([*names, *VELOCITIES, "KI", "KF", "LOSS", "PN", "PT", "PM", "MUC"]))
-    values = solve(scene, [*wanted, "STATUS"])
+    sizes = ("KI", "KF", "LOSS", "PN", "PT", "PM", "MUC")
+    values = solve(scene, [*dict.fromkeys([*names, *VELOCITIES, *sizes]), "STATUS"])
     size = len(scene["UX"])
-    bounds = {name: np.empty(size) for name in (*wanted, "gt")}
+    bounds = {name: np.empty(size) for name in (*names, "slide")}
     sliding = np.empty(size)
     for part in strips(size):
-        moved, sliding[part] = _moved({n: scene[n][part] for n in COLUMNS}, wanted)
+        moved, sliding[part] = _moved({n: scene[n][part] for n in COLUMNS}, names)
         for name, bound in moved.items():
             bounds[name][part] = bound
-    ties = np.abs(sliding) <= bounds.pop("gt")
-    for name in wanted:
+    ties = np.abs(sliding) <= bounds.pop("slide")
+    for name in names:
         bounds[name] += EPSILON * np.abs(values[name])
     flipped = {**scene, "MU": np.where(scene["MU"] == -10.0, scene["MU"], -scene["MU"])}
     status = values.pop("STATUS").astype(int)
@@ -93,7 +93,7 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
         bounds,
         _scales(scene, values),
         ties,
-        {name: np.where(ties, column, np.nan) for name, column in solve(flipped, wanted).items()}
+        {name: np.where(ties, column, np.nan) for name, column in solve(flipped, names).items()}
         if ties.any()
         else values,
         (status & NO_ANSWER_NEEDED) > 0,
@@ -107,29 +107,25 @@ def _finite(scene: Mapping[str, Floats]) -> dict[str, Floats]:
 
 
 def _moved(scene: Mapping[str, Floats], names: Sequence[str]) -> tuple[dict[str, Floats], Floats]:
-    """Return the bounds of results and of the sliding velocity "gt", and that velocity."""
-    program = Program("impulses", _finite(scene))
+    """Return the bounds of results and of the sliding velocity "slide", and that velocity."""
+    impulses = {name: impulse for name, impulse in IMPULSES.items() if name in names}
+    judged = (*names, "slide", *impulses.values())
+    program = Program("impulses", _finite(scene), wanted=judged)
     base = program.base
-    kept = ("point", "pivot", "stick")
-    targets = [s.target for s in program.statements if s.target not in (*kept, *names)]
+    targets = [s.target for s in program.statements if s.target not in ("point", "pivot", "stick")]
     moves = {target: base[target] * (1 + STEP) for target in (*COLUMNS[:-1], *targets)}
     moves["MU"] = np.where(base["MU"] == -10.0, base["MU"], moves["MU"])
-    sums = {name: np.zeros(program.size) for name in (*names, "gt", *IMPULSES.values())}
+    sums = {name: np.zeros(program.size) for name in judged}
     for target, value in moves.items():
         changed = program.propagate({target: value})
         for name, total in sums.items():
-            if changed[name] is not base[name]:
-                total += np.abs(changed[name] - base[name])
-    # a program's results follow from rounded energies and impulses, too
-    for target in ("KI", "KF", "PN", "PT", "PM", *VELOCITIES):
-        changed = program.propagate({target: base[target] * (1 + STEP)})
-        for name, total in sums.items():
+            # a result's own rounding is added by the caller
             if name != target and changed[name] is not base[name]:
                 total += np.abs(changed[name] - base[name])
-    for name, impulse in IMPULSES.items():  # a program may have it from either
+    for name, impulse in impulses.items():  # a program may have it from either
         sums[name] = np.fmax(sums[name], sums.pop(impulse))
     factor = SAFETY * EPSILON / STEP
-    return {name: total * factor for name, total in sums.items()}, base["gt"]
+    return {name: total * factor for name, total in sums.items()}, base["slide"]
 
 
 def _scales(scene: Mapping[str, Floats], values: Mapping[str, Floats]) -> dict[str, Floats]:
@@ -169,15 +165,15 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
     size = len(scene["UX"])
     bounds = np.full((size, 6), np.nan)
     for part in strips(size):
-        program = Program("equations", {n: scene[n][part] for n in COLUMNS})
-        matrix, right, solution = (array[0] for array in program.system())
-        scale = np.abs(matrix).max(-1, keepdims=True)
-        matrix, right = matrix / scale, right / scale[..., 0]
-        good = np.isfinite(matrix.sum((-2, -1))) & (np.linalg.det(matrix) != 0)
+        columns = {n: scene[n][part] for n in COLUMNS}
+        program = Program("equations", columns, wanted=VELOCITIES)
+        matrix, right = (array[0] for array in program.system())
+        solution = np.array([program.base[name] for name in VELOCITIES]).T
+        good = np.isfinite(matrix.sum((-2, -1))) & np.isfinite(solution).all(-1)
         inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
-        size_of_terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
-        bound = (np.abs(inverse) @ size_of_terms)[..., 0]
-        disparity = _disparity({n: scene[n][part] for n in COLUMNS})[:, None]
+        terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
+        bound = (np.abs(inverse) @ terms)[..., 0]
+        disparity = _disparity(columns)[:, None]
         speeds = np.abs(solution[:, :4]).max(1, keepdims=True)
         spins = np.abs(solution[:, 4:]).max(1, keepdims=True)
         bound += disparity * np.concatenate([np.repeat(speeds, 4, 1), np.repeat(spins, 2, 1)], 1)

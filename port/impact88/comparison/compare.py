@@ -37,7 +37,9 @@ MAX_SAMPLE = 80  # rows of each kind in a search, and as many kept out of it
 MAX_ROWS_LISTED = 1000
 ROUNDINGS = 30.0  # bounds by which a mistake's numbers may be off
 MAX_CANDIDATES = 800  # rows of each kind from which those of a search are taken
-STEADY = 0.1  # of the digits that may be lost: a row in which elimination keeps more tells of a mistake
+STEADY = (
+    0.1  # of the digits that may be lost: a row in which elimination keeps more tells of a mistake
+)
 MAX_RESULT_CAUSES = 4
 
 
@@ -94,6 +96,7 @@ class _Table:
 
     def _excuse_elimination(self) -> None:
         """Take differences that elimination may cause for digits lost."""
+        self.elimination = {name: np.zeros(self.size) for name in self.names}
         doubtful = np.flatnonzero(np.any(list(self.misfit.values()), 0))
         if not doubtful.size:
             return
@@ -101,6 +104,7 @@ class _Table:
         bounds = elimination_bounds(scene, self.names)
         excused = np.ones(doubtful.size, bool)
         for name in self.names:
+            self.elimination[name][doubtful] = np.nan_to_num(bounds[name])
             off = np.abs(self.theirs[name] - self.ours[name])[doubtful]
             allowed = bounds[name] + self.limit(name)[doubtful]
             excused &= ~self.misfit[name][doubtful] | (off <= allowed)
@@ -290,6 +294,7 @@ def _wide_limit(table: _Table, name: str) -> Floats:
     """Return how far off the numbers of a program with a mistake may be."""
     size = np.fmax(table.reference.scales[name], np.abs(table.theirs[name]))
     rounding = np.fmax(ROUNDINGS * table.reference.bounds[name], LOST_DIGITS * size / 10)
+    rounding += table.elimination[name]
     return table.units[name] / 2 + rounding
 
 
@@ -306,9 +311,7 @@ def _samples(
         kinds.append(_spread(rows, 2 * MAX_SAMPLE))
     parts = []
     for offset in (0, 1):
-        rows = [
-            kind[offset::2] if kind.size >= 2 * MIN_HELD_OUT else kind for kind in kinds
-        ]
+        rows = [kind[offset::2] if kind.size >= 2 * MIN_HELD_OUT else kind for kind in kinds]
         places = np.sort(np.concatenate(rows))
         parts.append(
             Sample(
@@ -371,9 +374,7 @@ def _mistakes_together(
     return ()
 
 
-def _is_given(
-    candidate: Candidate, table: _Table, limits: Mapping[str, Floats], name: str
-) -> bool:
+def _is_given(candidate: Candidate, table: _Table, limits: Mapping[str, Floats], name: str) -> bool:
     """Return whether a program gives a result, too."""
     _, sample = _samples(table, limits, [*VELOCITIES, name])
     return bool(candidate.gives(sample.only([name])).mean() >= REQUIRED)
@@ -402,9 +403,7 @@ def _as_cause(
             sample = _from_velocities(sample, table, rows)
         explained += int(candidate.gives(sample).sum())
     where = str(candidate.condition or "")
-    return Cause(
-        candidate.text, where, tuple(names), explained, wrong.size, candidate.alternatives
-    )
+    return Cause(candidate.text, where, tuple(names), explained, wrong.size, candidate.alternatives)
 
 
 def _from_velocities(sample: Sample, table: _Table, rows: Any) -> Sample:

@@ -26,7 +26,7 @@ RANK = 5  # behind the edits without a constant
 RANK_KNOWN = 1
 GROUPS = {
     "<": "GA,PA,PB,TA,TB PA,PB TA,TB DA,DB MA,MB,IA,IB MA,MB IA,IB UX,UY,VX,VY UX,UY VX,VY WA,WB",
-    ">": "VAX,VAY,VBX,VBY VAX,VAY VBX,VBY WAF,WBF KI,KF DVA,DVB PN,PT",
+    ">": "VAX,VAY,VBX,VBY,WAF,WBF VAX,VAY,VBX,VBY VAX,VAY VBX,VBY WAF,WBF KI,KF DVA,DVB PN,PT",
 }
 """Columns read, and results shown, that share a constant."""
 KNOWN = {
@@ -126,7 +126,12 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     places: dict[str, dict[str, str]] = {}
     for site in sites(program.name, part):
         (target, *more), expression = site.targets, site.expressions[0]
-        if not more and len(site.expressions) == 1 and target not in reading and expression not in VELOCITIES:
+        if (
+            not more
+            and len(site.expressions) == 1
+            and target not in reading
+            and expression not in VELOCITIES
+        ):
             places.setdefault(target, {})[site.holes[0]] = expression
     edits = []
     for target, expressions in places.items():
@@ -149,9 +154,7 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     return edits
 
 
-def _statement_trial(
-    program: Program, target: str, values: Mapping[str, Any], form: Form
-) -> Trial:
+def _statement_trial(program: Program, target: str, values: Mapping[str, Any], form: Form) -> Trial:
     """Return the trial of a constant at each place in a statement."""
     scope = program.scope(target)
 

@@ -67,9 +67,14 @@ def stack(values: Sequence[Any], size: int) -> Any:
     arrays = [np.asarray(value) for value in values]
     largest = max(arrays, key=lambda array: array.ndim)
     if largest.ndim < 3:
-        return np.array([np.broadcast_to(array, size) for array in arrays])
-    shape = (largest.shape[0], 1, size)
-    return np.concatenate([np.broadcast_to(array, shape) for array in arrays], 1)
+        out = np.empty((len(arrays), size), np.result_type(*{array.dtype for array in arrays}))
+        for place, array in enumerate(arrays):
+            out[place] = array
+        return out
+    stacked = np.empty((largest.shape[0], len(arrays), size))
+    for place, array in enumerate(arrays):
+        stacked[:, place] = array if array.ndim < 3 else array[:, 0]
+    return stacked
 
 
 class Program:
@@ -85,6 +90,8 @@ class Program:
         Edits, the later on top of the earlier.
     velocities : mapping of str to ndarray, optional
         Final velocities to take instead of computing them.
+    wanted : sequence of str, optional
+        Compute these names only.
     """
 
     def __init__(
@@ -93,12 +100,15 @@ class Program:
         columns: Mapping[str, Floats],
         edits: Iterable[Edit] = (),
         velocities: Mapping[str, Floats] | None = None,
+        wanted: Sequence[str] = (),
     ) -> None:
         self.name = name
         self.spelling = spelling(name)
         self.size = int(np.size(columns["UX"]))
         self.typed: Values = {**FUNCTIONS, **columns}
         self.statements = list(self.spelling.statements)
+        if wanted:
+            self.statements = _ancestors(self.statements, (*wanted, *self.spelling.equations))
         identity = np.eye(len(self.spelling.unknowns) + 1)[1:]
         self.basis = dict(zip(self.spelling.unknowns, identity[:, :, None, None], strict=True))
         self.shown: list[Mapping[str, str]] = []
@@ -166,15 +176,24 @@ class Program:
         return names
 
     def _solve(self, equations: Sequence[Any]) -> dict[str, Any]:
-        """Return the unknowns for which the equations are 0."""
-        _, _, solution = self.system(equations)
+        """Return the unknowns for which the equations are 0; NaN where there are none."""
+        matrix, right = self.system(equations)
+        good = np.isfinite(matrix.sum((-2, -1))) & np.isfinite(right.sum(-1))
+        matrix[~good] = np.eye(right.shape[-1])
+        try:
+            solution = np.linalg.solve(matrix, right[..., None])[..., 0]
+        except np.linalg.LinAlgError:
+            good &= np.linalg.det(matrix) != 0
+            matrix[~good] = np.eye(right.shape[-1])
+            solution = np.linalg.solve(matrix, right[..., None])[..., 0]
+        solution[~good] = np.nan
         values = np.moveaxis(solution, -1, 0)
         if values.shape[1] == 1:
             values = values[:, 0]
         return dict(zip(self.spelling.unknowns, values, strict=True))
 
-    def system(self, equations: Sequence[Any] | None = None) -> tuple[Floats, Floats, Floats]:
-        """Return matrices (alternatives, scenes, m, m), right sides and solutions (..., m)."""
+    def system(self, equations: Sequence[Any] | None = None) -> tuple[Floats, Floats]:
+        """Return matrices (alternatives, scenes, m, m) with rows scaled to 1, and right sides."""
         if equations is None:
             equations = [self.base[name] for name in self.spelling.equations]
         count = len(self.spelling.unknowns) + 1
@@ -185,17 +204,17 @@ class Program:
         matrix = np.moveaxis(residuals[:, 1:] - residuals[:, :1], (0, 1), (-2, -1))
         right = np.moveaxis(-residuals[:, 0], 0, -1)
         scale = np.abs(matrix).max(-1)
-        good = np.isfinite(matrix.sum((-2, -1))) & np.isfinite(right.sum(-1)) & (scale > 0).all(-1)
-        scaled = matrix / scale[..., None]
-        scaled[~good] = np.eye(count - 1)
-        try:
-            solution = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0]
-        except np.linalg.LinAlgError:
-            good &= np.linalg.det(scaled) != 0
-            scaled[~good] = np.eye(count - 1)
-            solution = np.linalg.solve(scaled, (right / scale)[..., None])[..., 0]
-        solution[~good] = np.nan
-        return matrix, right, solution
+        return matrix / scale[..., None], right / scale
+
+
+def _ancestors(statements: Sequence[Statement], wanted: Sequence[str]) -> list[Statement]:
+    """Return the statements that names need."""
+    needed, chosen = set(wanted), []
+    for statement in reversed(statements):
+        if statement.target in needed:
+            needed |= statement.reads
+            chosen.append(statement)
+    return chosen[::-1]
 
 
 def _show(names: Values, changes: Mapping[str, str]) -> Values:

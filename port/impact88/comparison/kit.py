@@ -127,7 +127,9 @@ class Answers:
 
     def _check(self, columns: Mapping[str, Any]) -> None:
         """Find inputs that were changed, and cells that are neither empty nor a number."""
-        inputs = {name: numbers(self._in_order(columns[name])) for name in COLUMNS if name in columns}
+        inputs = {
+            name: numbers(self._in_order(columns[name])) for name in COLUMNS if name in columns
+        }
         values = {name: numbers(self.results[name]) for name in VELOCITIES}
         for place, vector in enumerate(self.vectors):
             label = vector["id"]

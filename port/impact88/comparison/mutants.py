@@ -13,7 +13,7 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from ..names import RESULTS
-from .evaluation import Edit, Program, evaluate, stack, statement_of
+from .evaluation import FUNCTIONS, Edit, Program, evaluate, stack, statement_of
 from .spellings import COLUMNS, VELOCITIES, Statement, parse, spelling
 
 SLOT = re.compile(r"SLOT\d+")
@@ -62,8 +62,10 @@ class Option(NamedTuple):
 
     def value(self, names: dict[str, Any]) -> Any:
         """Return its value."""
+        if self.template == "a":
+            return evaluate(self.parts["a"], names)
         letters = {letter: evaluate(part, names) for letter, part in self.parts.items()}
-        return evaluate(self.template, {**names, **letters})
+        return evaluate(self.template, {**FUNCTIONS, **letters})
 
 
 class Site(NamedTuple):
@@ -347,7 +349,9 @@ def describe(edit: Edit, name: str) -> str:
     """Return a sentence: what is written in which statement, and what should be."""
     if edit.says:
         return edit.says
-    parts = [f"{new}, should be {old}" for new, old in zip(edit.written, edit.expected, strict=True)]
+    parts = [
+        f"{new}, should be {old}" for new, old in zip(edit.written, edit.expected, strict=True)
+    ]
     statements = [statement_of(name, target) for target in edit.changes]
     subjects = " and ".join(dict.fromkeys(statement.subject for statement in statements))
     places = " and ".join(f"{s.target} = {s.text}" for s in statements)

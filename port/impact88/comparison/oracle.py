@@ -94,9 +94,7 @@ def oracle(
     return answers
 
 
-def answer_lines(
-    lines: Iterable[str], reference_digits: bool = True
-) -> Iterator[dict[str, Any]]:
+def answer_lines(lines: Iterable[str], reference_digits: bool = True) -> Iterator[dict[str, Any]]:
     """Yield the answer to each line of JSON, ``{"id": ..., "scene": {...}}``.
 
     A line that cannot be used gives ``{"id", "error": {"line", "message"}}``.
@@ -158,6 +156,8 @@ def _applesoft(texts: Mapping[str, list[str]]) -> dict[str, list[tuple[Any, Any,
                 f"{real:010x}" if here and is_stored else None,
                 f"{Decimal(value):f}" if here and is_stored else None,
             )
-            for here, text, real, value in zip(present, printed, reals.tolist(), values, strict=True)
+            for here, text, real, value in zip(
+                present, printed, reals.tolist(), values, strict=True
+            )
         ]
     return columns

@@ -54,14 +54,12 @@ def names_in(text: str) -> frozenset[str]:
 
 def _read(name: str) -> tuple[list[Statement], tuple[str, ...], tuple[str, ...]]:
     """Return the statements of a file, its equations and its unknowns."""
-    source = resources.files(__name__).joinpath(f"{name}.py").read_text("utf-8")
+    source = resources.files(__name__).joinpath(f"{name}.txt").read_text("utf-8")
     lines = source.splitlines()
     statements: list[Statement] = []
     unknowns: tuple[str, ...] = ()
-    (function,) = (node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef))
-    for node in function.body:
-        if not isinstance(node, ast.Assign):
-            continue
+    for node in ast.parse(source).body:
+        assert isinstance(node, ast.Assign)
         (target,) = node.targets
         if isinstance(target, ast.Tuple):
             unknowns = tuple(map(ast.unparse, target.elts))
