@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import impact88
+from impact88.conformance.comparison.compare import compare as compare_tables
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.names import SCENE
@@ -43,7 +44,7 @@ def put(path, content):
 
 
 def agreeing(table, **options):
-    found = impact88.compare(table, **options)
+    found = compare_tables(table, **options)
     assert (found.rows, found.agreeing) == (3, 3), found.summary
     return found
 
@@ -79,7 +80,7 @@ class TestHeadings:
         headings[headings.index("LOSS")] = pair[1]
         path = put(tmp_path / "a.csv", csv_text(ROWS, headings))
         with pytest.raises(UserError, match=f"are both {name}; expected one"):
-            impact88.compare(path)
+            compare_tables(path)
 
     @pytest.mark.parametrize("other", ["vax", "VAX [ft/s]", "ux"])
     def test_the_exact_name_is_read_and_the_other_told(self, tmp_path, other):
@@ -94,9 +95,9 @@ class TestHeadings:
         headings = ["VAX [mph]" if name == "VAX" else name for name in NAMES]
         path = put(tmp_path / "a.csv", csv_text(rows, headings))
         with pytest.raises(UserError, match=r"such as VAX \[mph\].*--units us .* or chapter"):
-            impact88.compare(path)
+            compare_tables(path)
         agreeing(path, units="chapter", rtol=1e-12)
-        assert impact88.compare(path, units="us", causes=False).differing == 3
+        assert compare_tables(path, units="us", causes=False).differing == 3
 
     def test_units_in_headings_and_in_cells(self, tmp_path, capsys):
         names = ["VAX [mph]" if n == "VAX" else n for n in NAMES]
@@ -105,7 +106,7 @@ class TestHeadings:
         agreeing(path, units="chapter")
         rows[0]["VAX"] = "3 kg"
         put(path, csv_text(rows, names))
-        found = impact88.compare(path, units="chapter")
+        found = compare_tables(path, units="chapter")
         assert (found.agreeing, [bad.column for bad in found.bad]) == (2, ["VAX"])
         assert main(["compare", str(path), "--units", "chapter"]) == 1
         assert "3 kg" in capsys.readouterr().err
@@ -127,7 +128,7 @@ class TestThousands:
         out = io.StringIO()
         csv.writer(out).writerows([names, list(rows[0].values())])
         put(path, out.getvalue() if form == "csv" else rows)
-        assert impact88.compare(path).agreeing == 1
+        assert compare_tables(path).agreeing == 1
         first = solved(path, capsys)
         assert first[0] == 0
         put(path, path.read_text().replace("3,728.5", "3728.5"))
@@ -138,17 +139,17 @@ class TestThousands:
 
     @pytest.mark.parametrize("text", ["3,728", "0,728.5", "37,28.5", "3,72", "3,728,5", "3.728,5"])
     def test_what_may_be_a_decimal_comma_is_asked_about(self, text):
-        found = impact88.compare([*self.of("3,728.5"), *self.of(text)])
+        found = compare_tables([*self.of("3,728.5"), *self.of(text)])
         assert (found.agreeing, [(bad.row, bad.column) for bad in found.bad]) == (1, [(2, "IA")])
 
     def test_results_too(self):
         scene = INPUTS[0]
         ki = float(impact88.solve(scene, ["KI"])["KI"])
-        assert impact88.compare([scene | {"KI": f"{ki:,.3f}"}]).agreeing == 1
+        assert compare_tables([scene | {"KI": f"{ki:,.3f}"}]).agreeing == 1
         wrong = [scene | {"KI": f"{ki + 0.01:,.3f}"}]
-        assert impact88.compare(wrong, causes=False).differing == 1
+        assert compare_tables(wrong, causes=False).differing == 1
         table = [scene | {"KI": f"{ki:.3f}"}, scene | {"KI": "100,905"}]
-        assert [bad.row for bad in impact88.compare(table).bad] == [2]
+        assert [bad.row for bad in compare_tables(table).bad] == [2]
 
 
 class TestJson:
@@ -180,7 +181,7 @@ class TestJson:
             agreeing(path)
             return
         with pytest.raises(UserError, match="expected JSON Lines, an object a line"):
-            impact88.compare(path)
+            compare_tables(path)
 
     @pytest.mark.parametrize(
         ("text", "told"),
@@ -226,14 +227,14 @@ class TestJson:
         echo = [row | {"outputs": {**row["outputs"], "UX": row["inputs"]["UX"]}} for row in rows]
         agreeing(put(path, "\n".join(map(json.dumps, echo))))
         echo[1]["reference"] = echo[1]["outputs"] | {"VAX": 3}
-        found = impact88.compare(put(path, "\n".join(map(json.dumps, echo))))
+        found = compare_tables(put(path, "\n".join(map(json.dumps, echo))))
         assert (found.agreeing, [bad.row for bad in found.bad]) == (2, [2])
         assert "two values of 'VAX'" in found.bad[0].reason
 
     def test_the_kits_vectors(self, tmp_path):
         path = tmp_path / "vectors.jsonl"
         assert main(["oracle", "--vectors", "12", "--no-reference", "-o", str(path)]) == 0
-        found = impact88.compare(path)
+        found = compare_tables(path)
         assert found.agreeing > 6
         assert not found.differing
 
@@ -276,7 +277,7 @@ class TestWorkbooks:
         # rows are named as the sheet has them
         spoiled = [*self.TABLE[:2], ["heavy", *self.TABLE[2][1:]], self.TABLE[3]]
         path = self.book(tmp_path / "b.xlsx", {**before, "Rows": [*above, *spoiled]})
-        (bad,) = impact88.compare(path).bad
+        (bad,) = compare_tables(path).bad
         assert (bad.row, bad.line) == (2, row + 2)
         assert solved(path, capsys)[0] == 1
 
@@ -284,12 +285,12 @@ class TestWorkbooks:
         rows = [["=1+1"], *self.TABLE]
         rows[2] = [*rows[2][:-1], None]
         path = self.book(tmp_path / "a.xlsx", {"Rows": rows})
-        assert impact88.compare(path).agreeing == 3
+        assert compare_tables(path).agreeing == 3
 
     def test_empty(self, tmp_path):
         path = self.book(tmp_path / "a.xlsx", {"Rows": []})
         with pytest.raises(UserError, match="holds nothing"):
-            impact88.compare(path)
+            compare_tables(path)
 
 
 class TestNpz:
@@ -352,18 +353,18 @@ class TestFrames:
 
     def test_missing_and_wrong_cells(self):
         wrong = [ROWS[0] | {"MA": None}, ROWS[1] | {"M": None}, ROWS[2] | {"VAX": 1.0}]
-        found = impact88.compare(wrong, causes=False)
+        found = compare_tables(wrong, causes=False)
         assert (found.agreeing, found.differing) == (1, 1)
         assert [(bad.row, bad.column) for bad in found.bad] == [(1, "MA")]
         missing = [ROWS[0] | {"VAX": float("nan")}, ROWS[1]]
-        assert impact88.compare(missing).tallies["VAX"].missing == 1
+        assert compare_tables(missing).tallies["VAX"].missing == 1
 
     def test_headings_as_in_files(self):
         assert agreeing({name.lower(): column for name, column in COLUMNS.items()}).remarks
         metric = {"VAX [mph]": [1.0] * 3, **COLUMNS}
         del metric["VAX"]
         with pytest.raises(UserError, match="some columns have units"):
-            impact88.compare(metric)
+            compare_tables(metric)
 
     @pytest.mark.parametrize(
         "frame",
@@ -381,8 +382,8 @@ class TestFrames:
     )
     def test_unusable(self, frame):
         with pytest.raises(UserError):
-            impact88.compare(frame)
+            compare_tables(frame)
 
     def test_format_is_a_files(self):
         with pytest.raises(UserError, match="a frame has its own"):
-            impact88.compare(ROWS, format="csv")
+            compare_tables(ROWS, format="csv")

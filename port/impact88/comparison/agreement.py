@@ -84,8 +84,6 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
         for name, bound in moved.items():
             bounds[name][part] = bound
     ties = np.abs(sliding) <= bounds.pop("slide")
-    for name in names:
-        bounds[name] += EPSILON * np.abs(values[name])
     flipped = {**scene, "MU": np.where(scene["MU"] == -10.0, scene["MU"], -scene["MU"])}
     status = values.pop("STATUS").astype(int)
     return Reference(
@@ -119,8 +117,7 @@ def _moved(scene: Mapping[str, Floats], names: Sequence[str]) -> tuple[dict[str,
     for target, value in moves.items():
         changed = program.propagate({target: value})
         for name, total in sums.items():
-            # a result's own rounding is added by the caller
-            if name != target and changed[name] is not base[name]:
+            if changed[name] is not base[name]:
                 total += np.abs(changed[name] - base[name])
     for name, impulse in impulses.items():  # a program may have it from either
         sums[name] = np.fmax(sums[name], sums.pop(impulse))
@@ -158,9 +155,9 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
 
     Notes
     -----
-    Skeel's bound ``|A^-1| (|A| |x| + |b|)`` of Equations 13-18, `ELIMINATION_STEPS` roundings. Where
-    one body is far heavier, elimination in a bad order loses as many digits more as their masses or
-    inertias differ by.
+    Skeel's bound ``|A^-1| (|A| |x| + |b|)`` of Equations 13-18, `ELIMINATION_STEPS` roundings.
+    Where one body is far heavier, elimination in a bad order loses as many digits more as their
+    masses or inertias differ by.
     """
     size = len(scene["UX"])
     bounds = np.full((size, 6), np.nan)

@@ -1,4 +1,4 @@
-"""Compare another program's results with the reference, and name the mistake behind a difference."""
+"""Compare another program's results with the reference, and name the mistake."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import UserError
 from .agreement import (
     COMPARED,
     LOST_DIGITS,
     Bools,
-    Reference,
     elimination_bounds,
     reference,
 )
@@ -24,7 +24,6 @@ from .diagnosis import (
     explain,
     information,
 )
-from ..errors import UserError
 from .evaluation import Floats, Program
 from .kit import Answers, check_kit
 from .numbers import numbers, units
@@ -163,7 +162,7 @@ def compare(
     Examples
     --------
     >>> scene = impact88.sample(1).numbers()
-    >>> comparison = impact88.compare([{**scene, "VAX": -13.2631}], causes=False)
+    >>> comparison = impact88.compare([{**scene, "VAX": -13.2627}], causes=False)
     >>> comparison.passed, comparison.differing
     (True, 0)
     """
@@ -330,7 +329,8 @@ def _is_steady(table: _Table, rows: Any, names: Sequence[str]) -> Bools:
     judged = [n for n in VELOCITIES if n in names] or list(names)
     bounds = elimination_bounds(scene, judged)
     sizes = [bounds[n] / np.fmax(table.reference.scales[n][rows], 1e-300) for n in judged]
-    return ~(np.max(sizes, 0) > STEADY * LOST_DIGITS)
+    steady: Bools = ~(np.max(sizes, 0) > STEADY * LOST_DIGITS)
+    return steady
 
 
 def _mistakes(table: _Table, limits: Mapping[str, Floats]) -> tuple[Cause, ...]:

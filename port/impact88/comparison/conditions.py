@@ -1,6 +1,6 @@
 """Where a mistake holds: a decision stump over the scene."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +29,12 @@ QUANTITIES = {
 }
 """What a condition may be about besides the columns, in names of ``spellings/impulses.py``."""
 SPECIAL_VALUES = {"MU": (-10.0,), "M": (4.0,)}
+RELATIONS: dict[str, Any] = {
+    "above": np.greater,
+    "below": np.less,
+    "equal to": np.equal,
+    "not": np.not_equal,
+}
 MAX_ERRORS = 0.03  # of the rows: where digits are few, some fit by chance
 MIN_ROWS = 4  # on each side
 
@@ -42,12 +48,8 @@ class Condition(NamedTuple):
 
     def rows(self, quantities: Mapping[str, Floats]) -> Bools:
         """Return the rows in which it holds."""
-        column = quantities[self.quantity]
-        if self.relation == "equal to":
-            return column == self.value
-        if self.relation == "not":
-            return column != self.value
-        return column > self.value if self.relation == "above" else column < self.value
+        relation: Callable[[Floats, float], Bools] = RELATIONS[self.relation]
+        return relation(quantities[self.quantity], self.value)
 
     def __str__(self) -> str:
         return f"where {self.quantity} is {self.relation} {self.value:.6g}"

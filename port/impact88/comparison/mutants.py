@@ -40,7 +40,10 @@ PATTERNS = {
     "a == b": "a != b; a < b; a > b; a <= b; a >= b",
 }
 """An expression -> what may be written instead; single letters stand for any expression."""
-ANY = "-a; 0; 1; 2; 2 * a; a / 2; a * a; abs(a); 1 / a; sqrt(abs(a)); a * pi / 180; a * 180 / pi; 1 - a; 1 + a"
+ANY = (
+    "-a; 0; 1; 2; 2 * a; a / 2; a * a; abs(a); 1 / a; sqrt(abs(a)); 1 - a; 1 + a; "
+    "a * pi / 180; a * 180 / pi"
+)
 LINEAR = "-a; 0; 2 * a; a / 2"
 CONDITIONS = ("point", "pivot", "stick")
 CONSTANTS = "0; 1; 2; 3; 4; -1; 0.5; 10; 100; 90; 360"

@@ -15,14 +15,15 @@ from ..names import DEFAULT_M, SCENE
 from ..program.replay import replay, unpack
 from ..program.run import run
 from ..program.scene import Scene
-from .agreement import COMPARED, reference
+from . import agreement
+from .agreement import COMPARED
 
 SCHEMA = "impact88/oracle/3"
 DIGITS = 30
 
 
 def oracle(
-    scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference_digits: bool = True
+    scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
 ) -> list[dict[str, Any]]:
     """Return all that is computed of each scene, for checking another program.
 
@@ -55,15 +56,16 @@ def oracle(
     >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]
     ('-13.263', '84d433d66f')
     """
-    given = [scenes] if isinstance(scenes, Mapping) else list(scenes)
+    is_one = isinstance(scenes, Mapping) or not isinstance(scenes, Iterable)
+    given = [scenes] if is_one else list(scenes)
     checked = [_scene(scene) for scene in given]
     if not checked:
         return []
-    digits = _reference_digits(checked) if reference_digits else [{}] * len(checked)
+    digits = _reference_digits(checked) if reference else [{}] * len(checked)
     texts = {name: [scene[name] for scene in checked] for name in SCENE}
     numbers = {name: np.array(list(map(to_double, c))) for name, c in texts.items()}
     solved = solve(numbers, ["STATUS", "COND", *COMPARED])
-    bounds = reference(numbers).bounds
+    bounds = agreement.reference(numbers).bounds
     applesoft = _applesoft(texts)
     answers = []
     for row, scene in enumerate(checked):
@@ -94,7 +96,7 @@ def oracle(
     return answers
 
 
-def answer_lines(lines: Iterable[str], reference_digits: bool = True) -> Iterator[dict[str, Any]]:
+def answer_lines(lines: Iterable[str], reference: bool = True) -> Iterator[dict[str, Any]]:
     """Yield the answer to each line of JSON, ``{"id": ..., "scene": {...}}``.
 
     A line that cannot be used gives ``{"id", "error": {"line", "message"}}``.
@@ -105,10 +107,10 @@ def answer_lines(lines: Iterable[str], reference_digits: bool = True) -> Iterato
         label = None
         try:
             entry = json.loads(line, parse_float=str, parse_int=str)
-            label = entry["id"] if isinstance(entry, dict) and "id" in entry else None
+            label = json.loads(line).get("id") if isinstance(entry, dict) else None
             if not isinstance(entry, dict) or not isinstance(entry.get("scene"), dict):
                 raise UserError('expected {"id": ..., "scene": {...}}')
-            (answer,) = oracle([entry["scene"]], reference_digits)
+            (answer,) = oracle([entry["scene"]], reference)
             yield {"id": label, **answer}
         except (ValueError, RecursionError) as error:
             message = {"line": place, "message": str(error)}
@@ -119,10 +121,10 @@ def _scene(values: Mapping[str, Any]) -> Scene:
     """Return a scene of texts or numbers."""
     if not isinstance(values, Mapping):
         raise UserError(f"{values!r:.60} is no scene; expected a mapping of names to numbers")
-    texts = {
-        name: value if isinstance(value, str) else to_text(float(value))
-        for name, value in values.items()
-    }
+    try:
+        texts = {n: x if isinstance(x, str) else to_text(float(x)) for n, x in values.items()}
+    except (TypeError, ValueError):
+        raise UserError("a value of the scene is no number; expected numbers or texts") from None
     scene = values if isinstance(values, Scene) else Scene({"M": DEFAULT_M, **texts})
     if to_double(scene["M"]) not in (4.0, 6.0):
         raise UserError(f"M is {scene['M']}; expected 6 or 4")

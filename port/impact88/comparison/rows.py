@@ -1,4 +1,4 @@
-"""Mistakes of a table, not of a program: rows in another order, digits cut off, single precision."""
+"""Mistakes of a table, not of a program: order of rows, digits cut off, single precision."""
 
 from collections.abc import Mapping
 
@@ -46,7 +46,8 @@ def other_rows(
     if counts.max() < MIN_FRACTION * len(shifts):
         return "the results are those of other rows: the order of the rows differs"
     shift = int(values[counts.argmax()])
-    return f"the results are those of the scene {abs(shift)} row(s) {'below' if shift > 0 else 'above'}"
+    side = "below" if shift > 0 else "above"
+    return f"the results are those of the scene {abs(shift)} row(s) {side}"
 
 
 def cut_digits(ours: Floats, theirs: Floats, units: Floats, wrong: Bools) -> bool:

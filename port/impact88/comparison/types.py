@@ -21,6 +21,12 @@ class Cause:
         Rows explained, of those that disagree in these results.
     alternatives : tuple of str
         Other mistakes that give the same numbers.
+
+    Examples
+    --------
+    >>> cause = impact88.Cause("MA, should be MB", "", ("VBX",), rows=290, of=300)
+    >>> cause.unexplained
+    10
     """
 
     edit: str
@@ -88,6 +94,12 @@ class Comparison:
         The first rows that disagree, from 1.
     kit : dict of str to object, optional
         The kit's id, its number of vectors, and the reason of each that fails.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> impact88.compare({**scene, "LOSS": "57.0"}).disagreements[0].row
+    1
     """
 
     passed: bool

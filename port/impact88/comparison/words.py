@@ -62,7 +62,7 @@ def as_json(comparison: "Comparison") -> dict[str, Any]:
 
 
 def as_junit(comparison: "Comparison", name: str) -> str:
-    """Return a JUnit report: a test of the rows that agree, one for each row or vector that fails."""
+    """Return a JUnit report: a test for the rows that agree, and one for each that fails."""
     causes = "; ".join(f"{c.edit} {c.where}".strip() for c in comparison.causes)
     failures = {f"row {row}": causes or "no cause found" for row in comparison.differing_rows}
     for reason, ids in comparison.kit.get("failed", {}).items():

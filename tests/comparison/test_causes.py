@@ -1,0 +1,181 @@
+"""The mistake of another program is named as the edit to undo, or none is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from wrongprograms import answers
+
+import impact88
+from impact88.comparison.kit import frozen_vectors
+from impact88.comparison.mutants import models, sites
+from impact88.comparison.spellings import COLUMNS, NAMES, VELOCITIES
+
+long = pytest.mark.long
+TEXTS = [v["scene"] for v in frozen_vectors() if v["class"] != "failure"][:240]
+SCENE = {name: np.array([float(scene[name]) for scene in TEXTS]) for name in COLUMNS}
+
+
+def table_of(program: str, *edits: tuple[str, str], digits: str = "") -> dict[str, Any]:
+    """Return what a program with edits answers, beside the scenes."""
+    theirs = {n: np.array(c) for n, c in answers(TEXTS, program, edits).items()}
+    if digits:
+        theirs = {
+            name: np.array([digits % float(x) if x else "" for x in column])
+            for name, column in theirs.items()
+        }
+    return {**SCENE, **theirs}
+
+
+def right_table(names: tuple[str, ...] = VELOCITIES) -> dict[str, np.ndarray]:
+    return {**SCENE, **impact88.solve(SCENE, names)}
+
+
+class TestMistakes:
+    @pytest.mark.parametrize(
+        ("program", "edit", "words"),
+        [
+            ("on_a", ("slip = dvy*c - dvx*s", "slip = dvy*c + dvx*s"), "sliding velocity"),
+            pytest.param(
+                "jacobian",
+                ("rhs[0] = -(1 + e)*u[0]", "rhs[0] = -(1 - e)*u[0]"),
+                "1 - E, should be 1 + E",
+                marks=long,
+            ),
+            pytest.param(
+                "impulse",
+                ("knn = R + (an + bn)**2", "knn = R + (an - bn)**2"),
+                "effective mass",
+                marks=long,
+            ),
+            pytest.param("four", ("k = A.m/B.m", "k = B.m/A.m"), "MA and MB", marks=long),
+        ],
+    )
+    def test_an_edit_of_the_velocities_is_named(
+        self, program: str, edit: tuple[str, str], words: str
+    ) -> None:
+        comparison = impact88.compare(table_of(program, edit))
+        (cause, *_) = comparison.causes
+        assert words in cause.edit
+        assert cause.rows >= 0.96 * cause.of
+
+    @pytest.mark.parametrize(
+        ("edit", "results", "words"),
+        [
+            (("LOSS = 100*(KI - KF)/KI", "LOSS = 100*(KI - KF)/KF"), ("LOSS",), "KF"),
+            (("0.5*ib*WBF**2", "0.5*ia*WBF**2"), ("KF", "LOSS"), "ia, should be ib"),
+            (("VBX - vbx, VBY", "VBX - vax, VBY"), ("DVB",), "UX, should be VX"),
+        ],
+    )
+    def test_an_edit_of_a_result_is_named(
+        self, edit: tuple[str, str], results: tuple[str, ...], words: str
+    ) -> None:
+        comparison = impact88.compare(table_of("on_a", edit))
+        (cause,) = comparison.causes
+        assert cause.results == results
+        assert words in " ".join([cause.edit, *cause.alternatives])
+
+    @long
+    def test_a_limit_is_named_with_its_number(self) -> None:
+        scene = {**SCENE, "MU": np.where(SCENE["MU"] == -10, -10, np.minimum(SCENE["MU"], 0.6))}
+        theirs = impact88.solve(scene, VELOCITIES)
+        texts = {n: np.array([f"{x:.3f}" for x in c]) for n, c in theirs.items()}
+        (cause,) = impact88.compare({**SCENE, **texts}).causes
+        assert cause.edit == "MU limited to 0.6, as read"
+
+    @long
+    def test_a_mistake_under_a_condition_is_named_with_it(self) -> None:
+        slow = SCENE["UX"] ** 2 < 1000
+        theirs = impact88.solve({**SCENE, "E": np.where(SCENE["UX"] > 10, 0, SCENE["E"])})
+        assert slow.any()
+        (cause,) = impact88.compare({**SCENE, **{n: theirs[n] for n in VELOCITIES}}).causes
+        assert "E" in cause.edit
+        assert cause.where.startswith("where UX is above")
+
+    @long
+    def test_a_unit_is_named(self) -> None:
+        theirs = impact88.solve({**SCENE, "WA": SCENE["WA"] * np.pi / 30}, VELOCITIES)
+        (cause,) = impact88.compare({**SCENE, **theirs}).causes
+        assert "WA" in cause.edit
+        assert "revolutions per minute" in cause.edit
+
+
+class TestNoCause:
+    @long
+    def test_noise_has_none(self) -> None:
+        table = right_table()
+        noise = np.random.default_rng(1)
+        table |= {n: table[n] * (1 + 0.01 * noise.random(len(TEXTS))) for n in VELOCITIES}
+        comparison = impact88.compare(table)
+        assert comparison.differing
+        assert comparison.causes == ()
+
+    def test_too_few_digits_tell_no_cause(self) -> None:
+        table = {name: column[:1] for name, column in right_table(("VAX",)).items()}
+        table["VAX"] = np.array([f"{table['VAX'][0] + 1.0:.1f}"])
+        comparison = impact88.compare(table)
+        assert comparison.differing == 1
+        assert not comparison.causes
+
+
+class TestTables:
+    def test_an_empty_column_is_named(self) -> None:
+        table = right_table()
+        table["WAF"] = np.full(len(TEXTS), "")
+        comparison = impact88.compare(table)
+        assert not comparison.passed
+        assert "WAF is empty in every row" in comparison.notes
+
+    @pytest.mark.parametrize(
+        ("order", "words"),
+        [
+            (lambda n: np.roll(np.arange(n), 1), "1 row(s) above"),
+            (lambda n: np.random.default_rng(2).permutation(n), "order of the rows"),
+        ],
+    )
+    def test_rows_in_another_order_are_named(self, order: Any, words: str) -> None:
+        table = right_table()
+        places = order(len(TEXTS))
+        table |= {name: table[name][places] for name in VELOCITIES}
+        (cause,) = impact88.compare(table).causes
+        assert words in cause.edit
+
+    def test_cut_digits_are_named(self) -> None:
+        table: dict[str, Any] = right_table()
+        for name in VELOCITIES:
+            table[name] = np.array([f"{np.trunc(x * 1000) / 1000:.3f}" for x in table[name]])
+        (cause,) = impact88.compare(table).causes
+        assert cause.edit == "the last digit is cut, not rounded"
+
+    def test_single_precision_is_named(self) -> None:
+        table = right_table()
+        table |= {n: table[n].astype(np.float32).astype(float) for n in VELOCITIES}
+        (cause,) = impact88.compare(table).causes
+        assert "single precision" in cause.edit
+
+    def test_missing_results_do_not_pass(self) -> None:
+        table: dict[str, Any] = right_table()
+        table["VAX"] = table["VAX"].astype(object)
+        table["VAX"][3] = None
+        comparison = impact88.compare(table)
+        assert not comparison.passed
+        assert comparison.notes == ("1 row lack a result where there is one",)
+
+
+class TestMutants:
+    def test_every_edit_says_what_is_written(self) -> None:
+        for name in NAMES:
+            for site in sites(name, "velocities")[::97]:
+                edit = site.edit(0)
+                assert len(edit.written) == len(edit.expected) > 0
+
+    def test_models_edit_names_that_exist(self) -> None:
+        from impact88.comparison.spellings import spelling
+
+        targets: Mapping[str, str] = {s.target: "" for s in spelling("impulses").statements}
+        for edit in models():
+            for key in edit.changes:
+                assert key in targets or key[2:] in {*targets, *COLUMNS}

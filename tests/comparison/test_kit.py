@@ -1,0 +1,175 @@
+"""Kit, oracle, selfcheck, and the tables that are read."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+import impact88
+from impact88.apple import captured
+from impact88.comparison import kit, oracle, selfcheck, words
+from impact88.comparison.spellings import VELOCITIES
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("kit")
+    kit.write_kit(str(place))
+    return place
+
+
+@pytest.fixture(scope="module")
+def rows(folder: Path) -> list[dict[str, str]]:
+    """What the starter program in Python answers."""
+    with open(folder / "vectors.csv") as file:
+        run = subprocess.run(
+            [sys.executable, str(folder / "impact.py")],
+            stdin=file,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    return list(csv.DictReader(run.stdout.splitlines()))
+
+
+class TestKit:
+    def test_the_starter_program_passes(self, folder: Path, rows: list[dict[str, str]]) -> None:
+        for name in (kit.FROZEN_ID, str(folder)):
+            comparison = impact88.compare(rows, kit=name)
+            assert comparison.passed
+            assert comparison.kit["passed"] == comparison.kit["vectors"] == 1000
+
+    @pytest.mark.parametrize(
+        ("reason", "cheat"),
+        [
+            (kit.NO_ANSWER, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "")}),
+            (kit.NO_ANSWER, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "nan")}),
+            (kit.NO_NUMBER, lambda row, _: {**row, "VAX": "inf"}),
+            (kit.PARTIAL, lambda row, _: {**row, "WBF": ""}),
+            (kit.COPIED, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "1.5")}),
+            (kit.COPIED, lambda row, rows: {**row, **{n: rows[6][n] for n in VELOCITIES}}),
+            (kit.SURPLUS, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "0")}),
+            (kit.CHANGED, lambda row, _: {**row, "E": "0.123"}),
+            (kit.MISSING, lambda row, _: {**row, "id": "1988"}),
+            (kit.REPEATED, lambda row, rows: {**row, "id": rows[0]["id"]}),
+        ],
+    )
+    def test_cheats_fail_with_their_reason(
+        self, rows: list[dict[str, str]], reason: str, cheat: Any
+    ) -> None:
+        comparison = impact88.compare(
+            [cheat(row, rows) for row in rows], kit=kit.FROZEN_ID, causes=False
+        )
+        assert not comparison.passed
+        assert reason in comparison.kit["failed"]
+        report = ElementTree.fromstring(words.as_junit(comparison, "kit").partition("\n")[2])
+        assert int(report.attrib["failures"]) > 0
+
+    def test_other_vectors_are_no_kit(self, folder: Path, tmp_path: Path) -> None:
+        text = (folder / "vectors.csv").read_text().replace("0.1,", "0.2,", 1)
+        (tmp_path / "vectors.csv").write_text(text)
+        with pytest.raises(impact88.UserError, match=r"1988\.1"):
+            impact88.compare([{"id": "1"}], kit=str(tmp_path))
+
+
+class TestOracle:
+    def test_it_gives_the_frozen_answers(self) -> None:
+        vectors = kit.frozen_vectors()[::100]
+        answers = impact88.oracle([vector["scene"] for vector in vectors])
+        for vector, answer in zip(vectors, answers, strict=True):
+            assert answer["printout"] == vector["printout"]
+            assert answer["ending"] == vector["ending"]
+            for name, frozen in vector["results"].items():
+                ours = answer["results"][name]
+                assert [ours[k] for k in ("printed", "stored", "decimal", "reference")] == [
+                    frozen[k] for k in ("printed", "stored", "decimal", "reference")
+                ]
+                if frozen["reference"] and ours["double"] is not None:
+                    off = abs(ours["double"] - float(frozen["reference"]))
+                    assert off <= ours["bound"] or not off
+
+    def test_lines_that_cannot_be_used_are_answered_with_an_error(self) -> None:
+        good = json.dumps({"id": 7, "scene": dict(impact88.sample(1))})
+        lines = [good, "{", '{"id": "x", "scene": {"MA": "1"}}', "[]"]
+        found = list(oracle.answer_lines(lines, reference=False))
+        assert [entry["id"] for entry in found] == [7, None, "x", None]
+        assert ["error" in entry for entry in found] == [False, True, True, True]
+        assert found[2]["error"]["line"] == 3
+
+    @pytest.mark.parametrize("scene", [{"MA": "1"}, {**impact88.sample(1), "M": "5"}, 3])
+    def test_an_unusable_scene_is_refused(self, scene: Any) -> None:
+        with pytest.raises(impact88.UserError):
+            impact88.oracle(scene, False)
+
+
+class TestSelfcheck:
+    @pytest.fixture
+    def captures(self, tmp_path: Path) -> Path:
+        """A tenth of a per cent of the captures, and an altered scene."""
+        golden = captured.golden()
+        scenes = captured.rows(golden, captured.SCENES)[:3]
+        scenes[1]["printout"] = scenes[1]["printout"].replace("9", "8", 1)
+        with gzip.open(tmp_path / "scenes.jsonl.gz", "wt") as file:
+            file.writelines(json.dumps(row) + "\n" for row in scenes)
+        return tmp_path
+
+    def test_an_altered_capture_fails(self, captures: Path) -> None:
+        found = {check.name: check for check in selfcheck.checks(captures)}
+        assert (found["port"].right, found["port"].total) == (2, 3)
+        assert (found["replay"].right, found["replay"].total) == (2, 3)
+        assert not found["emulator"].passed
+        assert "FAIL" in selfcheck.as_text(list(found.values()))
+        assert not selfcheck.record(list(found.values()))["passed"]
+
+    @pytest.mark.long
+    def test_all_captures_come_out(self) -> None:
+        assert selfcheck.record(list(selfcheck.checks()))["passed"]
+
+
+class TestTables:
+    @pytest.mark.parametrize(
+        ("name", "text", "words_in_message"),
+        [
+            ("a.csv", "MA,VAX\n1\n", "row 1"),
+            ("a.csv", "MA,MA\n1,2\n", "two columns"),
+            ("a.csv", "MA,VAX\n1,2\n", "missing"),
+            ("a.csv", "MA\n", "no rows"),
+            ("a.jsonl", "{\n", "line 1"),
+            ("a.jsonl", "3\n", "no object"),
+            ("a.txt", "", "expected a name ending"),
+        ],
+    )
+    def test_unusable_files_are_named(
+        self, tmp_path: Path, name: str, text: str, words_in_message: str
+    ) -> None:
+        (tmp_path / name).write_text(text)
+        with pytest.raises(impact88.UserError, match=words_in_message):
+            impact88.compare(str(tmp_path / name))
+
+    def test_files_and_columns_are_one_table(self, tmp_path: Path) -> None:
+        scene = dict(impact88.sample(1))
+        row = {**scene, "VAX": "-13.263"}
+        (tmp_path / "a.csv").write_text(f"{','.join(row)}\n{','.join(row.values())}\n")
+        (tmp_path / "a.jsonl").write_text(json.dumps(row) + "\n")
+        tables: list[Any] = [tmp_path / "a.csv", str(tmp_path / "a.jsonl"), row, [row]]
+        assert all(impact88.compare(table).passed for table in tables)
+        assert impact88.compare({"VAX": ["-13.263"]}, values=scene).passed
+
+    def test_results_of_the_table_are_needed(self) -> None:
+        with pytest.raises(impact88.UserError, match="no results"):
+            impact88.compare(dict(impact88.sample(1)))
+
+    def test_a_comparison_is_text_and_json(self) -> None:
+        comparison = impact88.compare({**impact88.sample(1), "VAX": "-13.2", "KI": "1"})
+        assert "NOT PASSED" in str(comparison)
+        fields = words.as_json(comparison)
+        assert fields["schema"] == words.SCHEMA
+        assert fields["disagreements"][0]["theirs"] == "-13.2"
