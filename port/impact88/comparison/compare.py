@@ -214,7 +214,7 @@ def _notes(table: _Table) -> tuple[str, ...]:
     for count, says in (
         (
             int((table.lost & ~table.wrong).sum()),
-            "agree to at least 10 digits, but not to those of double precision",
+            "agree to at least 10 digits, but not to double precision",
         ),
         (int(missing.sum()), "lack a result where there is one"),
         (int(table.surplus.sum()), "have a number where the equations have no answer"),

@@ -56,8 +56,9 @@ def oracle(
     >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]
     ('-13.263', '84d433d66f')
     """
-    is_one = isinstance(scenes, Mapping) or not isinstance(scenes, Iterable)
-    given = [scenes] if is_one else list(scenes)
+    given: list[Any] = [scenes]
+    if isinstance(scenes, Iterable) and not isinstance(scenes, Mapping):
+        given = list(scenes)
     checked = [_scene(scene) for scene in given]
     if not checked:
         return []
