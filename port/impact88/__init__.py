@@ -22,6 +22,7 @@ Today's work, in double precision
     prepared, Prepared      the same for many short calls: root finders, samplers
     evaluate            what follows from any quantities that are known of an impact
     solve_frame         the same for pandas, polars, pyarrow, records, lists of dicts
+    Amount              a value, exact or known within limits
     bounds, Bounds, Uncertain   results of values known within limits
     solve_for, Solution     Equations 13-18 for any unknowns, over arrays
     reconstruct, Reconstruction, Reconstructions
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from . import names as names
     from . import status as status
     from .apple.emulator.emulator import Applesoft as Applesoft
+    from .cases.amounts import Amount as Amount
     from .casework.chapter.barrier import barrier as barrier
     from .casework.chapter.colinear import colinear as colinear
     from .casework.chapter.colinear import colinear_inverse as colinear_inverse
@@ -111,6 +113,7 @@ _LAZY = {
         "casework.uncertainty.bounds": "bounds",
         "casework.uncertainty.boundstable": "Bounds",
         "casework.reconstruction.reconstructions": "Reconstructions reconstruct",
+        "cases.amounts": "Amount",
         "collision.uncertain": "Uncertain",
     }.items()
     for name in names_there.split()
