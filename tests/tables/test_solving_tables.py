@@ -224,6 +224,9 @@ def test_sweeps(tmp_path: Path) -> None:
     with target.open() as file:
         (row,) = csv.DictReader(file)
     assert (row["MU"], row["DA [ft]"]) == (SAMPLE["MU"], SAMPLE["DA"])
+    digits = Case.of({**SAMPLE, "UX": "-90315.88170", "UY": "+1.50"})
+    (block,) = sweep_table(digits).blocks
+    assert (block.columns["UX"], block.columns["UY"]) == (["-90315.88170"], ["+1.50"])
     for text in ("0:1", "0:1:0", "0:1:x", "0:much:3", "0:1:99999999", "0 .. 1:2:3"):
         with pytest.raises(UserError, match="--sweep"):
             sweep_table(case, {"MU": text})

@@ -9,7 +9,7 @@ from math import isfinite, prod
 import numpy as np
 
 from ..cases.case import Case
-from ..decimals import to_text
+from ..decimals import negated, to_double, to_text
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from .textformats import BLOCK_ROWS, Block, Table
@@ -44,7 +44,7 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
         raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
     if not ranges:
         given = [name for name in case.texts if name not in case.omitted]
-        values = {n: [case.view.shown_text(n, case.numbers[n])] for n in given}
+        values = {name: [_shown_digits(case, name)] for name in given}
     names = [case.view.heading(name) for name in values]
     rows = enumerate(product(*values.values()), 1)
 
@@ -54,6 +54,14 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
             yield Block({n: list(c) for n, c in columns}, [number for number, _ in block])
 
     return Table(names, blocks(), case.source)
+
+
+def _shown_digits(case: Case, name: str) -> str:
+    """Return a value as shown, with the digits typed where nothing but its sign is converted."""
+    (factor, offset), text = case.view.map(name), case.texts[name]
+    if offset or abs(factor) != 1:
+        return case.view.shown_text(name, to_double(text))
+    return negated(text) if factor < 0 else text
 
 
 def _values(case: Case, name: str, text: str) -> list[str]:
