@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from ..names import CHAPTER, LENGTH, MASS, RESULTS, SCENE, VELOCITY
+from ..names import LENGTH, MASS, VELOCITY, quantity
 from .estimates import inertia_of_weight, is_car, rectangle_inertia, weight
 from .units import View
 
@@ -80,23 +80,27 @@ def implausible(
         yield Implausible("EM", (values["EM"] == 0) & has_size, words)
 
 
+_LIMITS = {
+    MASS: (MIN_MASS, MAX_MASS, "{entry}: no vehicle has that mass (200 kg to 60 t)"),
+    VELOCITY: (0.0, MAX_SPEED, "{entry}: no vehicle is as fast (500 km/h)"),
+    LENGTH: (
+        0.0,
+        MAX_ARM,
+        "{entry}: the contact point is more than 15 m from the center of gravity",
+    ),
+}
+"""Smallest and largest size in m, kg, s, and the remark, by the rule of the quantity."""
+
+
 def _magnitudes(values: Mapping[str, Any], view: View, has_size: Any) -> Iterator[Implausible]:
     """Yield remarks on masses, speeds and arms that no vehicle has."""
     for name, value in values.items():
-        row = SCENE.get(name) or RESULTS.get(name) or CHAPTER.get(name)
-        if row is None or row.unit not in (MASS, VELOCITY, LENGTH):
-            continue
-        size = abs(value) * float(view.base_size(row.unit))
-        if row.unit == MASS:
-            is_off = ((size > 0) & (size < MIN_MASS)) | ((size > MAX_MASS) & (size < math.inf))
-            yield Implausible(name, is_off, "{entry}: no vehicle has that mass (200 kg to 60 t)")
-        elif row.unit == VELOCITY:
-            is_off = (size > MAX_SPEED) & (size < math.inf)
-            yield Implausible(name, is_off, "{entry}: no vehicle is as fast (500 km/h)")
-        elif name in ("DA", "DB"):
-            is_off = (size > MAX_ARM) & (size < math.inf) & has_size
-            words = "{entry}: the contact point is more than 15 m from the center of gravity"
-            yield Implausible(name, is_off, words)
+        rule = quantity(name).unit
+        if rule in _LIMITS and (rule != LENGTH or name in ("DA", "DB")):
+            low, high, words = _LIMITS[rule]
+            size = abs(value) * float(view.base_size(rule))
+            is_off = ((size > 0) & (size < low)) | ((size > high) & (size < math.inf))
+            yield Implausible(name, is_off & (has_size if rule == LENGTH else True), words)
 
 
 def _inertia(

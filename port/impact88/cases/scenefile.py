@@ -137,16 +137,21 @@ def _is_replaced(name: str, texts: Mapping[str, str]) -> bool:
 
 
 class Template(NamedTuple):
-    """A kind of collision: its title, the command that takes its file, advice, and its entries with
-    the text each begins with."""
+    """A kind of collision: its title, the command that takes its file, advice, and its entries, as
+    NAME or NAME=TEXT."""
 
     title: str
     command: str
     advice: str
-    entries: dict[str, str]
+    words: str
+
+    @property
+    def entries(self) -> dict[str, str]:
+        """The text that each entry begins with, by name."""
+        parts = (word.partition("=") for word in self.words.split())
+        return {name: text for name, _, text in parts}
 
 
-_FACING = {"TA": "course", "TB": "course"}
 TEMPLATES = {
     "intersection": Template(
         "Intersection: speeds before from skids and departure angles",
@@ -154,40 +159,37 @@ TEMPLATES = {
         "Momentum alone: masses, courses before and after, and speeds after. A skid to rest is a\n"
         'speed: SAF = "skid 62 ft at 0.7 +- .05". Courses are counterclockwise from x. Leave SAF\n'
         "and SBF empty and give SA and SB for the converse.",
-        {"M": "4", **dict.fromkeys("MA MB HA HB SAF HAF SBF HBF".split(), ""), **_FACING},
+        "M=4 MA MB HA HB SAF HAF SBF HBF TA=course TB=course",
     ),
     "rear-end": Template(
         "Rear end: delta-V from closing speed and restitution",
         "solve",
         "Both along x, A into B. SB is 0 for a standing car; E is .1 to .4 at low speeds.",
-        {"M": "4", "MA": "", "MB": "", "SA": "", "HA": "0", "SB": "0", "HB": "0", "E": ""}
-        | _FACING,
+        "M=4 MA MB SA HA=0 SB=0 HB=0 E TA=course TB=course",
     ),
     "head-on": Template(
         "Head-on: speeds after and delta-V",
         "solve",
         "Along one line: A along x, B against it. E = 0 leaves them locked together.",
-        {"M": "4", "MA": "", "MB": "", "SA": "", "HA": "0", "SB": "", "HB": "180", "E": "0"}
-        | _FACING,
+        "M=4 MA MB SA HA=0 SB HB=180 E=0 TA=course TB=course",
     ),
     "barrier": Template(
         "Barrier: one vehicle against a rigid barrier",
         "chapter barrier",
         "The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",
-        dict.fromkeys(("MA", "IA", "DA", "PA"), "")
-        | {"TA": "0", "GA": "0", "E": "", "MU": "", "EM": "1", "UX": "", "UY": "0", "WA": "0"},
+        "MA IA DA PA TA=0 GA=0 E MU EM=1 UX UY=0 WA=0",
     ),
     "planar": Template(
         "Planar impact: velocities after from those before",
         "solve",
         f'{SIGNS}\nMU = "locked" ends the sliding; EM = 1 is no moment.',
-        {**dict.fromkeys(SCENE, ""), "WA": "0", "WB": "0", "EM": "1", "M": "6"},
+        "E MU EM=1 DA DB GA PA PB TA TB MA MB IA IB UX UY WA=0 VX VY WB=0 M=6",
     ),
     "crush": Template(
         "Crush energy to delta-V (Equation 19)",
         "chapter delta-v",
         "An estimate from the energy lost, fitted to eleven staged collisions.",
-        dict.fromkeys(("MA", "MB", "SA", "SB", "EL"), ""),
+        "MA MB SA SB EL",
     ),
 }
 """The kinds of collision that `template` offers."""
@@ -220,7 +222,7 @@ def template(kind: str = "planar", units: str = "us") -> str:
     """
     if kind not in TEMPLATES:
         raise UserError(f"{quoted(kind)} is not a template; expected {', '.join(TEMPLATES)}")
-    title, command, advice, entries = TEMPLATES[kind]
+    title, command, advice, _ = TEMPLATES[kind]
     view = View.of(units=units)
     heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 {command} FILE"
-    return write_toml({**view.words(), **entries}, (), heading, view)
+    return write_toml({**view.words(), **TEMPLATES[kind].entries}, (), heading, view)

@@ -403,18 +403,11 @@ class _Reading:
         case, vehicle = self.solver.case, name[1]
         sizes = [case.sizes[n].value for n in (f"L{vehicle}", f"B{vehicle}") if n in case.sizes]
         values = np.full(self.count, np.nan)
-        estimates: dict[float, float | str] = {}
         for at, mass in enumerate(masses.tolist()):
-            if mass not in estimates:
-                try:
-                    estimates[mass] = estimate(name, mass, sizes, self.solver.view)[0]
-                except UserError as error:
-                    estimates[mass] = str(error).removeprefix(f"{name} ")
-            value = estimates[mass]
-            if isinstance(value, str):
-                self.bad.setdefault(at, (name, value))
-            else:
-                values[at] = value
+            try:
+                values[at] = estimate(name, mass, sizes, self.solver.view)[0]
+            except UserError as error:
+                self.bad.setdefault(at, (name, str(error).removeprefix(f"{name} ")))
         return values
 
     def refuse(self, results: Mapping[str, NDArray[Any]]) -> None:
@@ -422,14 +415,11 @@ class _Reading:
         suspects = np.zeros(self.count, np.bool_)
         for name, values in results.items():
             suspects |= (values == Status.NOT_FINITE) if name == "STATUS" else np.isnan(values)
-        places = np.flatnonzero(suspects)
-        if not places.size:
-            return
-        scene = {n: np.broadcast_to(x, self.count)[places] for n, x in self.columns.items()}
-        for name, reason, where in _refusals(scene, self.points[places]):
-            for at in places[np.broadcast_to(where, places.size)].tolist():
-                number = to_text(float(self.columns[name][at]))
-                self.bad.setdefault(at, (name, f"= {number} {reason}"))
+        for at in np.flatnonzero(suspects).tolist():
+            scene = {n: float(np.broadcast_to(x, self.count)[at]) for n, x in self.columns.items()}
+            if refusal := _refusal(scene):
+                name, reason = refusal
+                self.bad.setdefault(at, (name, f"= {to_text(scene[name])} {reason}"))
 
     def texts(self, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
@@ -476,27 +466,24 @@ class _Reading:
         return shown
 
 
-def _refusals(
-    scene: Mapping[str, Floats], points: NDArray[np.bool_]
-) -> Iterator[tuple[str, str, NDArray[np.bool_]]]:
-    """Yield column, reason and rows of numbers that no impact has."""
-    if "M" in scene:
-        yield "M", "is neither 4 nor 6", (scene["M"] != 4) & (scene["M"] != 6)
-    for name, values in scene.items():
-        examined = ~points if name in UNUSED_BY_POINTS else np.True_
-        if name in ("MA", "MB", "IA", "IB"):
-            yield name, "is not above 0", ~(values > 0) & examined
-        else:
-            yield name, "is no finite number", ~np.isfinite(values) & examined
+def _refusal(scene: Mapping[str, float]) -> tuple[str, str] | None:
+    """Return a value that no impact has, and why; None for a scene without one."""
+    if scene["M"] not in (4, 6):
+        return "M", "is neither 4 nor 6"
+    for name, value in scene.items():
+        if scene["M"] == 4 and name in UNUSED_BY_POINTS:
+            continue
+        if name in ("MA", "MB", "IA", "IB") and not value > 0:
+            return name, "is not above 0"
+        if not (math.isfinite(value) or (value == math.inf and name in ("MA", "MB", "IA", "IB"))):
+            return name, "is no finite number"
     for inertia, names in (("MA", "UX UY"), ("MB", "VX VY"), ("IA", "WA"), ("IB", "WB")):
-        is_fixed = (scene[inertia] == np.inf) if inertia in scene else np.False_
         for name in names.split():
-            if name in scene:
-                reason = f"is not 0, and {inertia} is infinite: a barrier is at rest"
-                yield name, reason, is_fixed & (scene[name] != 0)
-    if {"MA", "MB", "IA", "IB"} <= {*scene}:
-        a, b = (np.isinf(scene[f"M{v}"]) | np.isinf(scene[f"I{v}"]) for v in "AB")
-        yield "MB", "or IB is infinite, and so is MA or IA", a & b
+            if scene[inertia] == math.inf and scene[name]:
+                return name, f"is not 0, and {inertia} is infinite: a barrier is at rest"
+    if all(math.inf in (scene[f"M{vehicle}"], scene[f"I{vehicle}"]) for vehicle in "AB"):
+        return "MB", "or IB is infinite, and so is MA or IA"
+    return None
 
 
 def plain_numbers(column: Column, decimal_comma: bool = False) -> Floats:

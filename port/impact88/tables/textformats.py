@@ -12,7 +12,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from itertools import islice
 from typing import IO, Any, NamedTuple
@@ -89,11 +89,10 @@ def read_csv(path: str, encoding: str = "") -> Table:
     semicolons or tabs. Raises UserError."""
     where, source = display_name(path), Source(path)
     extent = source.extent
-    chunks = _recoded(source, where, encoding) if encoding else _chunks(source, where)
+    chunks = _chunks(source, where)
     first = next(chunks, b"")
-    if encoding_of(first) != "utf-8":
-        first = b"".join([first, *chunks])
-        first, chunks = decode(first, where).encode(), iter(())
+    if encoding or encoding_of(first) != "utf-8":
+        first, chunks = _recoded(b"".join([first, *chunks]), where, encoding), iter(())
     text = _utf8(first, where, 0)
     head = text.split("\n", 1)[0]
     delimiter = max(",;\t", key=head.count)
@@ -112,18 +111,14 @@ def read_csv(path: str, encoding: str = "") -> Table:
     return Table(names, blocks(), where, "line", delimiter == ";", extent=extent)
 
 
-class _csv_errors:  # noqa: N801 - a context, used like a function
+@contextmanager
+def _csv_errors(where: str) -> Iterator[None]:
     """Context in which errors of the csv module are UserErrors."""
-
-    def __init__(self, where: str) -> None:
-        self.where = where
-
-    def __enter__(self) -> None:
-        csv.field_size_limit(LONGEST_LINE)
-
-    def __exit__(self, kind: Any, error: BaseException | None, _: Any) -> None:
-        if isinstance(error, csv.Error):
-            raise UserError(f"is not CSV: {error}", self.where) from None
+    csv.field_size_limit(LONGEST_LINE)
+    try:
+        yield
+    except csv.Error as error:
+        raise UserError(f"is not CSV: {error}", where) from None
 
 
 def _chain(first: bytes, others: Iterable[bytes]) -> Iterator[bytes]:
@@ -154,14 +149,13 @@ def _with_newlines(data: bytes) -> bytes:
     return data.replace(b"\r\n", b"\n") if b"\r" in data else data
 
 
-def _recoded(source: Source, where: str, encoding: str) -> Iterator[bytes]:
-    """Yield the bytes of a file in another encoding, as UTF-8."""
-    data = source.readall()
-    source.close()
+def _recoded(data: bytes, where: str, encoding: str) -> bytes:
+    """Return text in an encoding, by default that of its mark, as UTF-8. Raises UserError."""
     try:
-        yield data.decode(encoding).replace("\r\n", "\n").encode()
+        text = data.decode(encoding) if encoding else decode(data, where)
     except (LookupError, UnicodeDecodeError) as error:
         raise UserError(f"cannot be read as {quoted(encoding)}: {error}", where) from None
+    return _with_newlines(text.encode())
 
 
 def _utf8(chunk: bytes, where: str, line: int) -> str:
