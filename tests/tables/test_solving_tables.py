@@ -77,6 +77,7 @@ def test_headings_name_the_system() -> None:
         ("UX", "1,234", "may be a decimal one"),
         ("UX", "1e999", "beyond the range of doubles"),
         ("UX", "nan", "is empty"),
+        ("UX", "1 0", "= '1 0' is not an amount"),
         ("UX", math.nan, "is empty"),
     ],
 )

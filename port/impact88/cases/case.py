@@ -470,7 +470,8 @@ class _Reader:
         values, missing = evaluate(scene, ["MUC"])
         if missing:
             names = " ".join(missing["MUC"])
-            self.remarks.append(f"MU = {self.given['MU']} needs {names}: it is not computed")
+            if {"MA", "MB"} <= {*texts}:  # else it is a table's, whose rows have the rest
+                self.remarks.append(f"MU = {self.given['MU']} needs {names}: it is not computed")
             return {}
         critical = float(values["MUC"])
         mu = share * abs(critical)

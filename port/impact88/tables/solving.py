@@ -500,16 +500,18 @@ def plain_numbers(column: Column, decimal_comma: bool = False) -> Floats:
     with suppress(OverflowError):  # a whole number beyond doubles
         if {*map(type, cells)} <= {float, int, NoneType}:
             return np.array(cells, np.float64)
-    try:
-        return np.array(to_doubles(cells))
-    except (TypeError, ValueError):
-        return np.array([_double(cell) for cell in cells], np.float64)
+    with suppress(TypeError, ValueError):  # some cell is no plain number
+        if " " not in "".join(cells):
+            return np.array(to_doubles(cells))
+    return np.array([_double(cell) for cell in cells], np.float64)
 
 
 def _double(cell: Any) -> float:
     """Return the double of a cell, NaN for one that is no plain number."""
     try:
-        return to_double(cell) if isinstance(cell, str) else float(cell)
+        if isinstance(cell, str):  # INPUT reads "1 0" as ten; a table's writer hardly means it
+            return math.nan if " " in cell.strip() else to_double(cell)
+        return float(cell)
     except (TypeError, ValueError, OverflowError):
         return math.nan
 
