@@ -158,10 +158,14 @@ def test_point_masses_along_one_line_need_no_plane() -> None:
     assert courses.with_(SA="5", SAF="", HAF="").texts["GA"] == "0"
     assert courses.with_(SA="0").texts["GA"] == "0"
     assert "MU is not used" in case.with_(MU="0.5").remarks[1]
-    locked = case.with_(MU="locked")
+    locked = case.with_(MU="Locked")
     assert (locked.texts["MU"], locked.texts["GA"]) == ("-10", "0")
     for changes in ({"M": "6"}, {"UY": "1"}, {"UY": "0 +- 1"}, {"GA": "5"}, {"PDOFA": "5"}):
         assert not any("along one line" in remark for remark in case.with_(changes).remarks)
+
+
+def test_barriers_are_numbers_that_cannot_be_typed() -> None:
+    assert Case.of({"MB": "inf", "IB": math.inf}).numbers["MB"] == math.inf
 
 
 def test_friction_as_a_share_of_the_critical() -> None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from ..decimals import to_double, to_text
+from ..decimals import is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..files import decode, display_name, read_bytes
 from ..names import DEFAULT_M, PIVOT, SCENE, did_you_mean, quantity
@@ -384,7 +384,7 @@ class _Reader:
             return value.mapped(*self.view.map(name))
         if name in ("TA", "TB") and value == COURSE:
             return Amount.exactly(math.nan, COURSE)
-        if name in ("MU", "MUP") and value == LOCKED:
+        if name in ("MU", "MUP") and value.lower() == LOCKED:
             return Amount.exactly(PIVOT, to_text(PIVOT))
         amount = read(name, value, self.view)
         is_measured = quantity(name).unit in DIMENSIONS and amount.value
@@ -466,7 +466,7 @@ class _Reader:
         from ..mechanics.solve import evaluate  # numpy; for a share only
 
         share = self.entries["MU"].value
-        scene = {name: float(text) for name, text in texts.items()}
+        scene = {name: _double(text) for name, text in texts.items()}
         values, missing = evaluate(scene, ["MUC"])
         if missing:
             names = " ".join(missing["MUC"])
@@ -485,13 +485,7 @@ class _Reader:
 
     def _remark(self) -> None:
         """Add remarks on how entries were read, and on implausible values."""
-        bare = [
-            name
-            for name in ("IA", "IB")
-            if str(self.given.get(name, "")).strip()[-1:].isdigit()
-            and name not in self.estimated
-            and not any(c.isalpha() for c in str(self.given[name]))
-        ]
+        bare = [name for name in ("IA", "IB") if is_number(str(self.given.get(name, "none")))]
         if self.view.units == "us" and bare:
             self.remarks.append(
                 f"{' and '.join(bare)} without a unit: read as lb-ft-s2 (slug ft2); for pounds "
@@ -504,6 +498,11 @@ class _Reader:
                 names = ("CAF", "CAL") if name == "DA" else ("CBF", "CBL") if name == "DB" else ()
                 entries = [f"{n} = {self.given[n]}" for n in (name, *names) if n in self.given]
                 self.remarks.append(words.format(entry=", ".join(entries), amount=amount))
+
+
+def _double(text: str) -> float:
+    """Return the double of a text to type; infinite for the mass of a barrier, which cannot be."""
+    return math.inf if text == "INF" else to_double(text)
 
 
 def _entry(name: str, value: Any) -> str | Amount:
