@@ -61,7 +61,9 @@ def test_headings_name_the_system() -> None:
     mixed = {"UX [mph]" if n == "UX" else n: c for n, c in scene().items()}
     with pytest.raises(UserError, match=r"expected DA \[ft\], or --units us"):
         solved(mixed, "VAX")
-    with pytest.raises(UserError, match="two columns of UX"):
+    with pytest.raises(UserError, match=r"^table: units of two systems"):
+        solved({"UX [mph]": ["1"], "UY [km/h]": ["1"]}, "VAX")
+    with pytest.raises(UserError, match=r"^table: UX and ux are two columns of UX"):
         solved({**scene(), "ux": ["1"]}, "VAX")
     (bad,) = solved(scene(UX=["25 mph"]), "VAX")[1]
     assert "'25 mph' has a unit; expected units, too" in bad.reason
@@ -155,6 +157,7 @@ def test_constants_fill_and_replace_columns() -> None:
     out, _, _ = solved(scene(2), "VAX", case=Case.of({"MU": "-10"}), replaced=["MU"])
     assert out["VAX"].tolist() == [solve({**NUMBERS, "MU": -10}, "VAX")["VAX"]] * 2
     assert out["MU"] == ["-10", "-10"]
+    assert not solved(scene(2), "VAX", case=Case.of({"MU": ""}), replaced=["MU"])[1]
     units = {f"{n} [{_units(n)}]" if _units(n) else n: c for n, c in columns.items() if n != "UX"}
     with pytest.raises(UserError, match="UX = 3 has no unit, and the columns have"):
         solved(units, "VAX", case=Case.loads("UX = 3\nMU = 0.5"))

@@ -344,7 +344,7 @@ def system_using(units: list[tuple[str, str]]) -> str:
     """
     sides = {unit_of(rule, symbol).side for rule, symbol in units} - {""}
     if len(sides) > 1:
-        raise UserError('units of two systems; expected units = "us" or "metric" in the file')
+        raise UserError('units of two systems; expected units = "us" or "metric", too (--units)')
     counts = {
         name: sum(system.shown.get(rule) == symbol for rule, symbol in units)
         for name, system in SYSTEMS.items()

@@ -202,11 +202,14 @@ class Solver:
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         self.results = tuple(results) or allowed
         check_names(self.results, allowed, f"result of --arithmetic {arithmetic}", "--outputs")
-        self.headings = _headings_by_name(table.names)
-        self.view = _view(self.headings, view if case is None else case.view)
+        try:
+            self.headings = _headings_by_name(table.names)
+            self.view = _view(self.headings, view if case is None else case.view)
+        except UserError as error:
+            raise UserError(str(error), table.where) from None
         self.case = _in_view(case or Case.of({}, view=view), self.view)
-        self.replaced = frozenset(replaced)
-        read_names = [name for name in self.headings if name in SCENE and name not in replaced]
+        self.replaced = {name for name in replaced if name in self.case.entries}
+        read_names = [n for n in self.headings if n in SCENE and n not in self.replaced]
         self.columns = {name: self.headings[name] for name in read_names}
         self.kept = [
             heading
