@@ -1,10 +1,7 @@
-"""The 1988 program: the listing's port, its arithmetics, and the ways to run it.
+"""The 1988 program: its listing ported line by line, and compiled for many scenes.
 
-Needs: `apple` (arithmetic, console, emulator), `collision` (cases, scene files, fields of the
-page), `mechanics` (the compiled library, for many scenes at once; an MU that is a share). Core.
-In: a scene as texts, or keys at the prompts. Out: the printed page, bit for bit, and its numbers.
-Way: `scene`, then `run` by `listing` and one of `arithmetics`, `vectorized` for many scenes, or
-`emulated` for the Apple itself.
-Used by: who reproduces a printout (`impact88 run`, `replay`); `printouts` and `conformance`, which
-hold papers and other programs against it; `tables`, `casework` and `bench`, which run its scenes.
+``scene``: the values as typed; ``listing``: the port, run by ``run`` in one of ``arithmetics``;
+``compiler``: the listing, or a copy of it, as steps, which ``generate`` prints as C and ``kernel``
+runs in ``applesoft.c``; ``replay``: columns of scenes; ``copies``: an office's copy of the listing,
+and the listing in the emulator.
 """

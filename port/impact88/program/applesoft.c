@@ -571,19 +571,17 @@ CALLED void walk(run *its, const program *p, const char *const *input)
     int budget = BUDGET, to;
     for (const step *s = p->steps; budget--; s++) {
         int a = s->a;
-        t -= TAKEN[s->operation];
         switch (s->operation) {
-#define CASE(name) case name: DO_##name; break;
+#define CASE(name, taken, left) case name: t -= taken; DO_##name; t += left; break;
         EACH_PLAIN_STEP(CASE)
-        case UNLESS: if (!t[0].e) s = p->steps + a - 1; break;
+        case UNLESS: t--; if (!t[0].e) s = p->steps + a - 1; break;
         case GOTO: s = p->steps + a - 1; break;
         case GOSUB: call(its, (int)(s - p->steps)), s = p->steps + a - 1; break;
         case RETURN: s = p->steps + returned(its); break;
-        case FOR: loop(its, a, (int)(s - p->steps), t[0]); break;
+        case FOR: t--, loop(its, a, (int)(s - p->steps), t[0]); break;
         case NEXT: if ((to = next(its, a)) >= 0) s = p->steps + to; break;
         case END: return;
         }
-        t += LEFT[s->operation];
     }
     fail(its, OUTSIDE);
 }

@@ -42,17 +42,14 @@ def digest(program: Steps) -> str:
 
 def print_c(program: Steps) -> str:
     """Return the header of `applesoft.c` for a program."""
-    plain = " ".join(f"DO({name})" for name in OPERATIONS if name not in JUMPS)
-    columns = zip(*OPERATIONS.values(), strict=True)
-    taken, left = (", ".join(map(str, column)) for column in columns)
+    counts = ((name, *count) for name, count in OPERATIONS.items() if name not in JUMPS)
+    plain = " ".join(f"DO({name}, {taken}, {left})" for name, taken, left in counts)
     constants = (decimaltext.read(text)[0] for text in program.constants)
     reals = ", ".join(f"{{0x{m:X}, {e}, {s}}}" for e, m, s in constants)
     rows = (
         f'#define LISTING "{digest(program)}"',
         f"enum operation {{ {', '.join(OPERATIONS)} }};",
         f"#define EACH_PLAIN_STEP(DO) {plain}",
-        f"static const int8_t TAKEN[] = {{{taken}}};",
-        f"static const int8_t LEFT[] = {{{left}}};",
         "CALLED void listing(run *its, const program *p, const char *const *input)",
         "{",
         f"static const real constants[] = {{{reals}}};",

@@ -367,6 +367,8 @@ def run_scenes(
                     _scene(cells, row)
                 raise
             code = part.ending[:, 0]
+        characters = text.tobytes()
+        sizes = part.ending[:, 2].tolist()
         rows = range(stop - start) if pages else code.nonzero()[0].tolist()
         for row in rows:
             if code[row] == OUTSIDE:
@@ -374,7 +376,8 @@ def run_scenes(
             elif code[row] == CODES["OVERFLOW"]:
                 _scene(cells, start + row)  # raises if the number too large is none
             if pages and code[row] != OUTSIDE:
-                printouts[start + row] = _page(part, row, text[row])
+                page = characters[PAGE * row : PAGE * row + sizes[row]]
+                printouts[start + row] = _with_error(part, row, page.decode("ascii"))
 
     kernel.run_blocks(work, len(results.ending), threads)
     return printouts
@@ -388,11 +391,12 @@ def _scene(cells: Cells, row: int) -> Scene:
     return scene
 
 
-def _page(part: Results, row: int, text: npt.NDArray[np.bytes_]) -> str:
-    """Return the printout that the library wrote, as a disk system lets it pass."""
-    code, _, size, _ = part.ending[row].tolist()
-    page = _DISK_COMMAND.sub("", text[:size].tobytes().decode("ascii"))
-    return f"{page}\n{_error(part, row).message.replace(' IN', BELL + ' IN')}" if code else page
+def _with_error(part: Results, row: int, page: str) -> str:
+    """Return a printout as a disk system lets it pass, with the error that ended it."""
+    page = _DISK_COMMAND.sub("", page)
+    if not part.ending[row, 0]:
+        return page
+    return f"{page}\n{_error(part, row).message.replace(' IN', BELL + ' IN')}"
 
 
 # --- one scene by the port ---
