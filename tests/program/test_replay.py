@@ -218,11 +218,11 @@ def test_a_name_that_is_no_result():
 
 @needs_library
 def test_a_library_of_another_listing_is_not_used(monkeypatch):
-    kernel._loaded.cache_clear()
+    kernel._library.cache_clear()
     monkeypatch.setattr(kernel, "digest", lambda steps: "another")
     assert kernel.compiled_library() is None
     assert replay(sample(1)).printed("XB").tolist() == ["14.51"]
-    kernel._loaded.cache_clear()
+    kernel._library.cache_clear()
 
 
 @needs_library

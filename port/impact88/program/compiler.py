@@ -18,8 +18,8 @@ from typing import NamedTuple
 from ..apple.emulator.tokens import list_text, split_number, tokenise
 
 OPERATIONS = {
-    name: (taken, left)
-    for taken, left, names in (
+    name: (pops, pushes)
+    for pops, pushes, names in (
         (0, 0, "LINE TOUCH TEXT STRING SHOW ECHO GOTO GOSUB RETURN NEXT END"),
         (0, 1, "CONSTANT VARIABLE READ TYPED"),
         (1, 0, "STORE PRINT UNLESS FOR"),
@@ -237,8 +237,8 @@ class _Compiler:
 
     def _emit(self, operation: str, number: int = 0) -> int:
         """Append a step and return its index."""
-        taken, placed = OPERATIONS[operation]
-        self._depth += placed - taken
+        pops, pushes = OPERATIONS[operation]
+        self._depth += pushes - pops
         if self._depth > MAX_DEPTH:
             raise NotCompiled(f"too deep a formula in line {self._line}")
         self._result.steps.append((operation, number))
@@ -281,10 +281,10 @@ class _Compiler:
         """NAME = formula, NAME$ = text or NAME(i,j) = formula."""
         if name.endswith("$"):
             self._take("=")
-            parts = [self._quoted()]
+            parts = [self._take_text()]
             while self._peek().text == "+":
                 self._take()
-                parts.append(self._quoted())
+                parts.append(self._take_text())
             self._emit("STRING", self._string(name) * MAX_TEXTS + self._text("".join(parts)))
         elif self._peek().text == "(":
             self._subscripts(name)
@@ -308,7 +308,7 @@ class _Compiler:
             self._formula()
         self._emit("STORE", variable)
 
-    def _quoted(self) -> str:
+    def _take_text(self) -> str:
         return self._take_kind("text").strip('"')
 
     def _print(self) -> None:
@@ -319,7 +319,7 @@ class _Compiler:
             if not newline:
                 self._take()
             elif token.kind == "text":
-                self._emit("TEXT", self._text(self._quoted()))
+                self._emit("TEXT", self._text(self._take_text()))
             elif token.text == "CHR$":
                 self._take()
                 self._take("(")
@@ -342,7 +342,7 @@ class _Compiler:
     def _input(self) -> None:
         prompt = "?\0"
         if self._peek().kind == "text":
-            prompt = self._quoted() + "\0"
+            prompt = self._take_text() + "\0"
             self._take(";")
         indices = self._input_names()
         self._emit("TEXT", self._text(prompt))
@@ -412,9 +412,9 @@ class _Compiler:
             start = self._at
             while self._take().text != ")":
                 pass
-            unused = self._tokens[start : self._at]
-            is_constant = all(token.kind == "number" or token.text in "(,)" for token in unused)
-            if not is_constant and "".join(token.text for token in unused) != shape:
+            bounds = self._tokens[start : self._at]
+            is_constant = all(token.kind == "number" or token.text in "(,)" for token in bounds)
+            if not is_constant and "".join(token.text for token in bounds) != shape:
                 raise NotCompiled(f"DIM of another shape in line {self._line}")
 
     # --- formulas ---

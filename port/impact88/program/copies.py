@@ -157,9 +157,10 @@ class ListingCopy:
         list of ChangedLine
             Number, and the text in both.
         """
-        restored = dict(read_program(files.packaged_text("impact88.legacy", LISTING)).lines)
-        own = dict(self._lines)
-        pairs = ((n, own.get(n, b""), restored.get(n, b"")) for n in sorted({*own, *restored}))
+        originals = dict(read_program(files.packaged_text("impact88.legacy", LISTING)).lines)
+        copies = dict(self._lines)
+        numbers = sorted({*copies, *originals})
+        pairs = ((n, copies.get(n, b""), originals.get(n, b"")) for n in numbers)
         return [
             ChangedLine(number, detokenise(copy), detokenise(original))
             for number, copy, original in pairs
@@ -257,16 +258,16 @@ class ListingCopy:
             text = spell(tokens)
             pieces, end = [], 0
             for statement in split_statements(text):
-                start, stop, typed = statement[0].start, statement[-1].stop, ""
+                start, stop, value = statement[0].start, statement[-1].stop, ""
                 if statement[0].kind == "data":
-                    typed = " DATA " + ",".join(self._data(statement[0].text, read, scene))
+                    value = " DATA " + ",".join(self._data(statement[0].text, read, scene))
                 elif statement[0].text == "IF":
                     break  # what follows is done at times only: its numbers are the copy's
                 elif key := typed_constant(statement, self._names):
                     start = next(token.stop for token in statement if token.text == "=")
-                    typed = scene.get(self._names[key], text[start:stop])
-                if typed:
-                    pieces += [text[end:start], typed]
+                    value = scene.get(self._names[key], text[start:stop])
+                if value:
+                    pieces += [text[end:start], value]
                     end = stop
             yield number, tokenise("".join((*pieces, text[end:])))
 
@@ -304,10 +305,10 @@ def _find_variables(statements: Sequence[Sequence[Token]]) -> dict[str, str]:
         elif target:
             uses.setdefault(target, set()).update(set(names[1:]) - {target})
     variables = {}
-    for name, printed in _printed_variables(statements).items():
-        sources = _sources(printed, uses, numbers)
-        if printed in numbers and (name not in numbers or printed not in SCENE):
-            variables[name] = printed
+    for name, key in _printed_variables(statements).items():
+        sources = _sources(key, uses, numbers)
+        if key in numbers and (name not in numbers or key not in SCENE):
+            variables[name] = key
         elif name in numbers:
             variables[name] = name
         elif len(sources) == 1:
@@ -323,13 +324,13 @@ def _after_then(statement: Sequence[Token]) -> Sequence[Token]:
 
 def _sources(variable: str, uses: Mapping[str, set[str]], numbers: set[str]) -> set[str]:
     """Return the variables of ``numbers`` from which a variable is computed, directly or not."""
-    visited = {variable}
+    closure = {variable}
     pending = [variable]
     while pending:
-        following = uses.get(pending.pop(), set()) - visited
-        visited |= following
+        following = uses.get(pending.pop(), set()) - closure
+        closure |= following
         pending += following
-    return visited & numbers
+    return closure & numbers
 
 
 def _printed_variables(statements: Sequence[Sequence[Token]]) -> dict[str, str]:
@@ -347,8 +348,8 @@ def _printed_variables(statements: Sequence[Sequence[Token]]) -> dict[str, str]:
                 elif match := _LABEL.search(text):
                     label, row = match[1], []
             elif token.kind == "name" and all(
-                beside.kind == "text" or beside.text in (";", "PRINT")
-                for beside in (statement[k - 1], *statement[k + 1 : k + 2])
+                neighbour.kind == "text" or neighbour.text in (";", "PRINT")
+                for neighbour in (statement[k - 1], *statement[k + 1 : k + 2])
             ):
                 name = row.pop(0) if row else label
                 if not variables.get(name, "-"):

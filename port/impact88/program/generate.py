@@ -43,7 +43,7 @@ def digest(program: Steps) -> str:
 def print_c(program: Steps) -> str:
     """Return the header of `applesoft.c` for a program."""
     counts = ((name, *count) for name, count in OPERATIONS.items() if name not in JUMPS)
-    plain = " ".join(f"DO({name}, {taken}, {left})" for name, taken, left in counts)
+    plain = " ".join(f"DO({name}, {pops}, {pushes})" for name, pops, pushes in counts)
     constants = (decimaltext.read(text)[0] for text in program.constants)
     reals = ", ".join(f"{{0x{m:X}, {e}, {s}}}" for e, m, s in constants)
     rows = (
@@ -78,13 +78,13 @@ def _statements(steps: list[tuple[str, int]]) -> Iterator[str]:
             was_open, open_loops = open_loops, open_loops + (1 if name == "FOR" else -1)
             if not (was_open and open_loops):
                 yield f"#undef OP\n#define OP(f) {'f' if open_loops else 'called_##f'}"
-        taken, left = OPERATIONS[name]
-        depth -= taken
+        pops, pushes = OPERATIONS[name]
+        depth -= pops
         step = _JUMPS.get(name, f"DO_{name};").format(a=number, k=k, calls=calls, loops=loops)
         label = f"at{k}:;" if k in targets else ""
-        place = f"real *const t = stack + {depth}; " if taken or left else ""
+        place = f"real *const t = stack + {depth}; " if pops or pushes else ""
         yield f"{label} {{ enum {{ a = {number} }}; {place}{step} }}"
-        depth += left
+        depth += pushes
 
 
 if __name__ == "__main__":

@@ -47,7 +47,7 @@ class Source(ctypes.Structure):
 
 
 class Results(NamedTuple):
-    """What runs leave, a row for each.
+    """The results of runs, a row for each.
 
     ``ending``: the error's code, 0 for none, its line, the size of the page, rows of the array;
     ``assigned``: a bit for each variable; ``reals``: variables as stored bytes; ``array``: its
@@ -112,7 +112,7 @@ class Program:
         if any(t.count(b"\n") != len(c) for t, c in zip(texts, columns, strict=True)):
             raise ValueError("a text of two lines")
         *sizes, fields = (array.shape[1] for array in results[2:])
-        *arrays, printed = (ctypes.c_void_p(array.ctypes.data) for array in results)
+        *arrays, fields_address = (ctypes.c_void_p(array.ctypes.data) for array in results)
         compiled_library().applesoft_run(
             ctypes.byref(self.source),
             (ctypes.c_char_p * len(texts))(*texts),
@@ -123,7 +123,7 @@ class Program:
             fields,
             *arrays,
             None if pages is None else ctypes.c_void_p(pages.ctypes.data),
-            printed,
+            fields_address,
         )
 
 
@@ -151,11 +151,11 @@ def listing() -> Program:
 
 
 @cache
-def _loaded() -> Any:
+def _library() -> Any:
     return library.loaded("applesoft_listing", digest(listing().steps))
 
 
 def compiled_library() -> Any:
     """Return the compiled library; None where it was not built from this listing, or is switched
     off."""
-    return None if library.is_switched_off() else _loaded()
+    return None if library.is_switched_off() else _library()

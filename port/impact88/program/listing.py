@@ -1,16 +1,16 @@
 """The listing: lines 100-1170 of the 1988 program, each above its translation.
 
-Lay the printed page beside it. Every line of `impact.bas` stands here once, in order, as a comment;
+Compare it with the printed page. Every line of `impact.bas` is here once, in order, as a comment;
 the Python under it does what that line does, with the listing's names (P$ is ``P_``) and in an
 arithmetic given as a parameter. Nothing is improved: what is odd in the original is odd here.
 
 How to read it: ``LET`` is a store, which rounds; elements of A round by themselves. ``C_1E4`` is the
-constant 1E4. GOTOs are the ifs they amount to: ``IF c THEN n`` skips, so the lines it skips stand
+constant 1E4. GOTOs are the ifs they amount to: ``IF c THEN n`` skips, so the lines it skips are
 under ``if not c``. NEXT adds one and goes round again unless the limit is passed, so a loop's body
 runs at least once and its variable ends one past the limit. NL ends a PRINT that no ``;`` ends. The
 subroutines at 1000 and 1070 are functions that share the variables.
 
-The port keeps no books: the BASIC line being executed is found from the comment above the Python
+The port does not track line numbers: the BASIC line being executed is found from the comment above the Python
 line being executed (`run.basic_line`), for the line of an error and for stopping after every line.
 """
 

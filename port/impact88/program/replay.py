@@ -421,15 +421,15 @@ def _fill(part: Results, row: int, record: Run, fields: Sequence[str]) -> None:
     part.ending[row] = code, line, 0, 0
     part.fields[row] = [*fields, *[""] * (len(PRINTED) - len(fields))]
     if record.A:
-        part.array[row] = [_stored(value) for value in record.A["data"]]
+        part.array[row] = [_stored_number(value) for value in record.A["data"]]
     values = dict(record.reals)
     if not code or line > COMPUTED["XA"]:
         values |= _contact_velocities(record.reals)
     for k, name in enumerate(kernel.listing().steps.variables):
-        part.reals[row, k] = _stored(values.get(name, "0" * 10))
+        part.reals[row, k] = _stored_number(values.get(name, "0" * 10))
 
 
-def _stored(text: str) -> int:
+def _stored_number(text: str) -> int:
     """Return stored bytes as a number; of a zero all are 0."""
     return 0 if text.startswith("00") else int(text, 16)
 

@@ -136,7 +136,7 @@ def start(
             raise
         error.line, names = _failure(exception.__traceback__)
         replies_read = console.reply.begun if console.reply else 0
-        if variable := _unfinished(error.line, names, chosen.unset, replies_read):
+        if variable := _new_variable(error.line, names, chosen.unset, replies_read):
             names = {**names, variable: chosen.zero}
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
     reals, array = _variables(names, chosen.unset)
@@ -225,16 +225,18 @@ def basic_line(python_line: int) -> int:
     return comments[index - 1][1] if index else 0
 
 
-def _unfinished(line: int, names: Mapping[str, Any], unset: object, replies_read: int) -> str:
+def _new_variable(line: int, names: Mapping[str, Any], unset: object, replies_read: int) -> str:
     """Return the variable that an error left as a new zero, "" without one.
 
     Applesoft creates a variable before it evaluates the formula, so it is the first one assigned in
     the line that has no value yet. ``replies_read``: the variables that INPUT had reached."""
     statements = next(text for _, number, text in _comments() if number == line)
-    assigned = [next(filter(None, m)) for m in _ASSIGNED.findall(statements.partition(" REM")[0])]
+    names_assigned = [
+        next(filter(None, m)) for m in _ASSIGNED.findall(statements.partition(" REM")[0])
+    ]
     if line in REPLY_LINES:
-        assigned = assigned[:replies_read]
-    return next((name for name in assigned if names[name] is unset), "")
+        names_assigned = names_assigned[:replies_read]
+    return next((name for name in names_assigned if names[name] is unset), "")
 
 
 def _failure(traceback: TracebackType | None) -> tuple[int, Mapping[str, Any]]:
