@@ -23,10 +23,9 @@ Today's work, in double precision
     evaluate            what follows from any quantities that are known of an impact
     solve_frame         the same for pandas, polars, pyarrow, records, lists of dicts
     Amount              a value, exact or known within limits
-    bounds, Bounds, Uncertain   results of values known within limits
+    bounds, Bounds      results of a scene known within limits
     solve_for, Solution     Equations 13-18 for any unknowns, over arrays
-    reconstruct, Reconstruction, Reconstructions
-                        the same with tolerances: measured values are adjusted
+    reconstruct, Reconstruction     the same with tolerances: what is known is adjusted
     colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
     scene_svg, Svg      a scene from above
 
@@ -47,23 +46,15 @@ if TYPE_CHECKING:
     from . import names as names
     from . import status as status
     from .apple.emulator.emulator import Applesoft as Applesoft
-    from .cases.amounts import Amount as Amount
-    from .casework.chapter.barrier import barrier as barrier
-    from .casework.chapter.colinear import colinear as colinear
-    from .casework.chapter.colinear import colinear_inverse as colinear_inverse
-    from .casework.chapter.deltav import delta_v as delta_v
     from .casework.figures.canvas import Svg as Svg
     from .casework.figures.sceneview import scene_svg as scene_svg
-    from .casework.reconstruction.reconstructions import Reconstructions as Reconstructions
-    from .casework.reconstruction.reconstructions import reconstruct as reconstruct
-    from .casework.reconstruction.solution import Reconstruction as Reconstruction
-    from .casework.reconstruction.unknowns import Solution as Solution
-    from .casework.reconstruction.unknowns import solve_for as solve_for
-    from .casework.uncertainty.bounds import bounds as bounds
-    from .casework.uncertainty.boundstable import Bounds as Bounds
+    from .cases.amounts import Amount as Amount
+    from .chapter.barrier import barrier as barrier
+    from .chapter.colinear import colinear as colinear
+    from .chapter.colinear import colinear_inverse as colinear_inverse
+    from .chapter.deltav import delta_v as delta_v
     from .collision.casescene import Scene as Scene
     from .collision.casescene import sample as sample
-    from .collision.uncertain import Uncertain as Uncertain
     from .comparison.compare import compare as compare
     from .comparison.oracle import oracle as oracle
     from .comparison.types import Cause as Cause
@@ -84,15 +75,22 @@ if TYPE_CHECKING:
     from .program.replay import replay as replay
     from .program.run import Run as Run
     from .program.run import run as run
+    from .reconstruction.answer import Reconstruction as Reconstruction
+    from .reconstruction.answer import reconstruct as reconstruct
+    from .reconstruction.bounds import Bounds as Bounds
+    from .reconstruction.bounds import bounds as bounds
+    from .reconstruction.unknowns import Solution as Solution
+    from .reconstruction.unknowns import solve_for as solve_for
     from .tables.frames import solve_frame as solve_frame
 
 _LAZY = {
     name: place
     for place, names_there in {
         "": "names status",
-        "casework.chapter.barrier": "barrier",
-        "casework.chapter.colinear": "colinear colinear_inverse",
-        "casework.chapter.deltav": "delta_v",
+        "cases.amounts": "Amount",
+        "chapter.barrier": "barrier",
+        "chapter.colinear": "colinear colinear_inverse",
+        "chapter.deltav": "delta_v",
         "comparison.compare": "compare",
         "comparison.oracle": "oracle",
         "comparison.types": "Cause Comparison",
@@ -104,17 +102,13 @@ _LAZY = {
         "mechanics.solve": "Prepared evaluate prepared solve",
         "program.run": "Run run",
         "printouts.reading.printout": "Printout read_printouts",
-        "casework.reconstruction.solution": "Reconstruction",
-        "casework.reconstruction.unknowns": "Solution solve_for",
+        "reconstruction.answer": "Reconstruction reconstruct",
+        "reconstruction.bounds": "Bounds bounds",
+        "reconstruction.unknowns": "Solution solve_for",
         "program.replay": "Replay replay",
         "printouts.reporting.examination": "Verification Verifications verify",
         "collision.casescene": "Scene sample",
         "tables.frames": "solve_frame",
-        "casework.uncertainty.bounds": "bounds",
-        "casework.uncertainty.boundstable": "Bounds",
-        "casework.reconstruction.reconstructions": "Reconstructions reconstruct",
-        "cases.amounts": "Amount",
-        "collision.uncertain": "Uncertain",
     }.items()
     for name in names_there.split()
 }

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import check_names, missing
 
@@ -28,10 +29,14 @@ def read_columns(known: Mapping[str, Any], names: Sequence[str]) -> list[Array]:
         raise UserError(missing(absent))
     columns = []
     for name in names:
+        value = known[name]
         try:
-            columns.append(np.asarray(known[name], np.float64))
+            column = to_double(value) if isinstance(value, str) else np.asarray(value)
+            if getattr(column, "dtype", None) is not None and column.dtype.kind in "OSU":
+                column = np.reshape([to_double(str(x)) for x in column.flat], column.shape)
+            columns.append(np.asarray(column, np.float64))
         except (TypeError, ValueError):
-            raise UserError(f"{name} is {quoted(known[name])}; expected numbers") from None
+            raise UserError(f"{name} is {quoted(value)}; expected numbers") from None
     try:
         np.broadcast_shapes(*(column.shape for column in columns))
     except ValueError:

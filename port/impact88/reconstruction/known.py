@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from numbers import Real
 from typing import Any
 
-from ..cases.amounts import Amount, read
+from ..cases.amounts import Amount
+from ..cases.case import Case
 from ..errors import UserError, quoted
 from ..names import check_names
+
+MAY_BE_INFINITE = ("MA", "MB", "IA", "IB")  # a barrier
 
 
 def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, Amount]:
@@ -18,7 +20,8 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     Parameters
     ----------
     known : mapping of str to float, str or Amount
-        Values by name; None and empty texts count as not given.
+        Values by name. Texts are read as in a file of these entries (`Case.of`), with their units;
+        None stands for nothing.
     allowed : collection of str
         Names that may be known.
 
@@ -30,26 +33,19 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     if not isinstance(known, Mapping):
         raise UserError(f"{quoted(known)} is not a mapping; expected names with their values")
     check_names(known, allowed, "quantity")
-    amounts = {}
-    for name, value in known.items():
-        if value is None or value == "":
-            continue
-        amounts[name] = _as_amount(name, value)
-    return amounts
+    given = {name: value for name, value in known.items() if value is not None}
+    if any(isinstance(value, str) for value in given.values()):
+        return dict(Case.of(given, "values").entries)
+    return {name: _as_amount(name, value) for name, value in given.items()}
 
 
 def _as_amount(name: str, value: Any) -> Amount:
     if isinstance(value, Amount):
         return value
-    if isinstance(value, str):
-        if name in ("TA", "TB") and value.strip() == "course":
-            return Amount.exactly(math.nan, "course")
-        if name == "MU" and value.strip() == "locked":
-            return Amount.exactly(-10.0)
-        return read(name, value)
-    if not isinstance(value, Real) and getattr(value, "shape", None) != ():
-        raise UserError(f"{name} is {quoted(value)}; expected a number, a text or an Amount")
-    number = float(value)
-    if math.isnan(number) or (math.isinf(number) and name not in ("MA", "MB", "IA", "IB")):
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise UserError(f"{name} is {quoted(value)}; expected a number, text or Amount") from None
+    if math.isnan(number) or (math.isinf(number) and name not in MAY_BE_INFINITE):
         raise UserError(f"{name} is {number}; expected a finite number")
     return Amount.exactly(number)

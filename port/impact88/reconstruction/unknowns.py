@@ -84,8 +84,8 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     >>> print(before[0]["UX"].round(2))
     -29.04
     """
-    values = {name: np.asarray(x, np.float64) for name, x in known.items()}
-    check_names(values, (*VEHICLES, *UNKNOWNS, "MU", "M"), "quantity")
+    check_names(known, (*VEHICLES, *UNKNOWNS, "MU", "M"), "quantity")
+    values, _ = evaluate(known, tuple(known))  # as numbers of one shape
     if np.all(values.pop("M", 6.0) == 4):
         values |= {name: np.zeros(()) for name in ("DA", "DB", "PA", "PB", "WA", "WB", "PM")}
         values |= {name: np.ones(()) for name in ("IA", "IB")}

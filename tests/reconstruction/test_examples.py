@@ -1,0 +1,25 @@
+"""The examples in the docstrings of the public functions."""
+
+import doctest
+import importlib
+
+import pytest
+
+import impact88
+
+MODULES = (
+    "reconstruction.answer",
+    "reconstruction.bounds",
+    "reconstruction.unknowns",
+    "chapter.colinear",
+    "chapter.barrier",
+    "chapter.deltav",
+    "chapter.validation",
+)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples(name):
+    module = importlib.import_module(f"impact88.{name}")
+    failed, tried = doctest.testmod(module, extraglobs={"impact88": impact88})
+    assert (failed, tried > 0) == (0, True)
