@@ -8,6 +8,7 @@ from impact88.mechanics.solve import evaluate
 from impact88.names import FINAL_STATE, VELOCITIES
 
 UNKNOWNS = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
+VEHICLES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA")
 SECTION_VII = {
     "MA": 96,
     "MB": 145,

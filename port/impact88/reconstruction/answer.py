@@ -441,7 +441,7 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
     names = [n for n in result_names(problem) if _exists(near, n)]
     undetermined = [name for name in names if near.is_open(name)]
     settled = [name for name in names if name not in undetermined]
-    values = {n: _without_noise(near.value(n), problem.size(n)) for n in settled}
+    values = {n: _without_noise(n, near.value(n), problem.size(n)) for n in settled}
     slopes = {name: near.slopes(name)[near.open :] for name in settled}
     if contact_time is not None and "P" in values:
         values["TF"] = contact_time
@@ -496,7 +496,10 @@ def _exists(near: _Neighbourhood, name: str) -> bool:
     return not at_rest
 
 
-def _without_noise(value: float, size: float) -> float:
+def _without_noise(name: str, value: float, size: float) -> float:
+    """Return a value without its rounding; the direction opposite to the axis is 180."""
+    if name in ANGLES and value < -180.0 + NOISE * size:
+        return 180.0
     return value if abs(value) > NOISE * size else 0.0
 
 

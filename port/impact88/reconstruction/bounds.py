@@ -97,6 +97,8 @@ class _Box:
 
     def __init__(self, amounts: Mapping[str, Amount], sigmas: float) -> None:
         amounts = {"M": Amount.exactly(6.0), **contact_point(amounts)}
+        if amounts["M"].value == 4:
+            amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
         if amounts["M"].value == 4 and "GA" not in amounts:
             line, _ = line_of_motion(amounts)
             if line is not None:  # nothing acts along the plane

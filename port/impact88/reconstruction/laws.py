@@ -20,9 +20,7 @@ from .impacts import AFTER, BEFORE, COURSES, PIVOT, SPEEDS, VEHICLES, components
 TYPED_TOL = 1e-3  # a law missed by less, relative to its largest term, holds but for rounding
 SIGNIFICANT = 3.0  # standard deviations from which a law is named
 MOTION = (*BEFORE, *AFTER)
-FOLLOWING = (
-    *"E MUP EM VC VS DVA DVB DVAF DVAR DVBF DVBR SA SB SAF SBF KI KF EL LOSS DT".split(),
-)
+FOLLOWING = (*"E MUP EM VC VS DVA DVB DVAF DVAR DVBF DVBR SA SB SAF SBF KI KF EL LOSS DT".split(),)
 """Quantities that follow from velocities alone."""
 
 

@@ -66,8 +66,7 @@ def question(result: Reconstruction) -> str:
 
 
 def _is_asked(result: Reconstruction, speed: str) -> bool:
-    names = {speed, *SPEEDS[speed]}
-    return not names & result.known.keys() or not {*SPEEDS[speed]} <= result.known.keys() | {speed}
+    return speed not in result.known and not {*SPEEDS[speed]} <= result.known.keys()
 
 
 def evidence(result: Reconstruction, view: View = PLAIN) -> str:
@@ -167,7 +166,7 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
     """Return what was made of the problem, and how it was searched."""
     ended, impacts, unseen = result.search
     lines = [*result.remarks]
-    if ended:
+    if impacts:
         lines.append(
             f"{ended} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected number "
             f"not seen {unseen:.2g}"
@@ -343,23 +342,30 @@ def as_json(results: Sequence[Reconstruction], view: View = PLAIN) -> dict[str, 
 
 
 def _impact_json(result: Reconstruction, view: View) -> dict[str, Any]:
-    values = result.values
+    found, evidence_ = {}, result.evidence
+    for name in (*result.values, *result.undetermined):
+        record: dict[str, Any] = {"unit": view.unit(name)}
+        if name in result.values:
+            record["value"] = float(view.shown(name, result.values[name]))
+        if name in result.deviations:
+            record["sd"] = _scaled(name, result.deviations[name], view)
+        for key, ends in (("interval", result.intervals), ("bounds", result.bounds)):
+            if name in ends:
+                record[key] = list(view.shown_ends(name, *ends[name]))
+        if name in result.drivers:
+            record["drivers"] = dict(result.drivers[name])
+        found[name] = record
     return {
         "verdict": result.verdict,
         "question": question(result),
         "refusal": refusal(result, view),
-        "values": {name: float(view.shown(name, x)) for name, x in values.items()},
-        "units": {name: view.unit(name) for name in values},
-        "deviations": {n: _scaled(n, x, view) for n, x in result.deviations.items()},
-        "intervals": {n: list(view.shown_ends(n, *ends)) for n, ends in result.intervals.items()},
-        "bounds": {n: list(view.shown_ends(n, *ends)) for n, ends in result.bounds.items()},
+        "results": found,
         "evidence": {
             "text": evidence(result, view),
-            "squares": result.evidence.squares,
-            "redundancy": result.evidence.redundancy,
-            "probability": result.evidence.probability,
-            "at_odds": list(result.evidence.at_odds),
-            "laws": [_law(law, view) for law in result.laws],
+            "squares": evidence_.squares,
+            "redundancy": evidence_.redundancy,
+            "probability": evidence_.probability,
+            "at_odds": list(evidence_.at_odds),
         },
         "checks": {
             name: {
@@ -372,8 +378,6 @@ def _impact_json(result: Reconstruction, view: View) -> dict[str, Any]:
         },
         "assumed": dict(result.assumed),
         "advice": list(advice(result)),
-        "open": list(result.undetermined),
-        "drivers": {name: dict(shares) for name, shares in result.drivers.items()},
         "correlations": [[a, b, x] for (a, b), x in result.correlations.items()],
         "remarks": list(remarks(result)),
         "solutions": result.solutions,

@@ -1,0 +1,113 @@
+"""Forward bounds against a grid and corners; quantiles, drivers, what cannot be used."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+import impact88
+from impact88.errors import UserError
+from impact88.mechanics.solve import solve
+from impact88.reconstruction.bounds import bounds
+
+SAMPLE = {name: float(x) for name, x in impact88.sample(1).numbers().items()}
+OUTPUTS = ("VAX", "WBF", "DVA", "LOSS", "PT")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_value_of_a_grid_lies_outside(seed):
+    rng = np.random.default_rng(seed)
+    names = rng.choice(
+        ["GA", "MU", "E", "EM", "DA", "PA", "UX", "VY", "MA", "WA"], 4, False
+    ).tolist()
+    widths = {
+        "GA": 20,
+        "MU": 0.5,
+        "E": 0.2,
+        "EM": 0.2,
+        "DA": 2,
+        "PA": 15,
+        "UX": 8,
+        "VY": 8,
+        "MA": 20,
+        "WA": 1,
+    }
+    limits = {n: SAMPLE[n] + widths[n] * np.array([-rng.random(), rng.random()]) for n in names}
+    values = {**SAMPLE, **{n: f"{low} .. {high}" for n, (low, high) in limits.items()}}
+    found = bounds(values, OUTPUTS, samples=100)
+    grids = np.meshgrid(*(np.linspace(*limits[n], 13) for n in names))
+    expected = solve({**SAMPLE, **dict(zip(names, map(np.ravel, grids), strict=True))}, OUTPUTS)
+    for name, bound in found.outputs.items():
+        width = bound.upper - bound.lower
+        assert bound.lower <= expected[name].min() + 1e-6 * width
+        assert bound.upper >= expected[name].max() - 1e-6 * width
+        at = solve({**SAMPLE, **bound.at_upper}, (name,))[name]
+        assert float(at) == pytest.approx(bound.upper)
+
+
+def test_corners_are_reached_exactly():
+    values = {**SAMPLE, "UX": "-31 .. -27", "VX": "12 .. 16", "E": "0 .. 0.1"}
+    bound = bounds(values, "VAX", samples=100).outputs["VAX"]
+    corners = product((-31, -27), (12, 16), (0, 0.1))
+    results = [
+        float(solve({**SAMPLE, "UX": a, "VX": b, "E": e}, "VAX")["VAX"]) for a, b, e in corners
+    ]
+    assert (bound.lower, bound.upper) == pytest.approx((min(results), max(results)), rel=1e-14)
+
+
+def test_quantiles_drivers_and_warnings():
+    found = bounds({**SAMPLE, "GA": "-30 +- 5", "MU": "0.7 .. 0.9"}, ["DVA", "LOSS"])
+    dva = found.outputs["DVA"]
+    assert (round(dva.lower, 3), round(dva.upper, 3)) == (10.947, 18.203)
+    assert dva.quantiles[0.5] == pytest.approx(14.56, abs=0.02)
+    assert list(dva.drivers) == ["GA", "MU"]
+    assert dva.drivers["GA"] == pytest.approx((0.88, 4.712), abs=0.01)
+    assert found.warnings["FRICTION_ABOVE_CRITICAL"] == pytest.approx(0.122, abs=0.005)
+    narrower = bounds(
+        {**SAMPLE, "GA": "-30 +- 5", "MU": "0.7 .. 0.9"}, "DVA", exclude=["FRICTION_ABOVE_CRITICAL"]
+    )
+    assert narrower.outputs["DVA"].upper < dva.upper
+    assert not narrower.warnings or narrower.outputs["DVA"].interval[1] < dva.interval[1]
+
+
+def test_correlations_narrow_the_draws_but_not_the_bounds():
+    values = {**SAMPLE, "UX": "-31 .. -27", "VX": "12 .. 16"}
+    alone, together = (
+        bounds(values, "DVA", correlations=pairs).outputs["DVA"]
+        for pairs in ({}, {("UX", "VX"): 0.95})
+    )
+    assert (alone.lower, alone.upper) == (together.lower, together.upper)
+    assert np.diff(together.interval) < 0.6 * np.diff(alone.interval)
+
+
+def test_moving_the_contact_point_and_a_share_of_the_critical_friction():
+    found = bounds({**SAMPLE, "CX": "0 +- 1", "MU": "70 .. 90 %"}, "VAX DVA").outputs
+    assert (round(found["VAX"].lower, 3), round(found["VAX"].upper, 3)) == (-16.299, -14.149)
+    assert (round(found["DVA"].lower, 3), round(found["DVA"].upper, 3)) == (12.766, 15.143)
+
+
+def test_inputs_that_no_wanted_result_uses_need_not_be_given():
+    values = {"M": 4, "MA": 3000, "MB": 2000, "UX": "-40 +- 2", "UY": 3, "VX": 10, "VY": -20}
+    assert list(bounds(values, "KI", samples=10).outputs) == ["KI"]
+    with pytest.raises(UserError, match="DVA needs"):
+        bounds(values, "DVA")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"UX": -29.0}, "no value is known within limits"),
+        ({"MX": 3}, "MX"),
+        ({"MB": float("nan")}, "MB"),
+        ({"E": "many"}, "E"),
+    ],
+)
+def test_what_cannot_be_used(change, words):
+    with pytest.raises(UserError, match=words):
+        bounds({**SAMPLE, "UX": "-29 +- 1", **change}, "DVA")
+    with pytest.raises(UserError, match="contradict"):
+        bounds(
+            {**SAMPLE, "UX": "-29 +- 1", "VX": "12 .. 16", "VY": "24 .. 26"},
+            "DVA",
+            correlations={("UX", "VX"): 0.9, ("VX", "VY"): 0.9, ("UX", "VY"): -0.9},
+        )

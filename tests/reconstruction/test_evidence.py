@@ -1,0 +1,180 @@
+"""Agreement with the evidence: which value, law or condition of physics, and by how much."""
+
+import numpy as np
+import pytest
+from collisions import RECORDER, SECTION_VII, random_impact
+from scipy.stats import chi2
+
+from impact88.cases.amounts import Amount
+from impact88.cases.units import View
+from impact88.chapter.staged import collisions
+from impact88.mechanics.inverse import complete
+from impact88.mechanics.solve import evaluate
+from impact88.names import FINAL_STATE, VELOCITIES
+from impact88.reconstruction.answer import reconstruct
+from impact88.reconstruction.fit import Search, chi_square_tail, expected_unseen
+from impact88.reconstruction.problem import Problem
+from impact88.reconstruction.words import evidence, refusal, remarks
+
+MOTION = (*VELOCITIES, *FINAL_STATE)
+KINDS = {
+    **dict.fromkeys(("VAX", "VAY", "VBX", "VBY", "UX", "SAF", "DVA"), 2.0),
+    **dict.fromkeys(("WAF", "WBF"), 0.3),
+    **dict.fromkeys(("HAF", "PDOFA"), 3.0),
+    "EL": 5000.0,
+}
+"""Twelve kinds of values, each with its tolerance."""
+
+
+def _within(value, tolerance):
+    return Amount(value, value - tolerance, value + tolerance, "uniform")
+
+
+@pytest.fixture(scope="module")
+def measured():
+    """A collision of which all velocities are measured well, with everything that follows."""
+    vehicles, truth = random_impact(np.random.default_rng(12))
+    everything, _ = evaluate(complete({**vehicles, **truth}).values, tuple(KINDS))
+    known = {name: Amount.exactly(x) for name, x in vehicles.items()}
+    known |= {name: _within(truth[name], 0.02 if name[0] == "W" else 0.2) for name in MOTION}
+    return known, {name: float(x) for name, x in everything.items()}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("times", [0.9, 5, 50])
+def test_a_value_at_odds_is_named_with_its_amount(measured, kind, times):
+    known, truth = measured
+    if kind in ("SAF", "HAF"):
+        known = {n: x for n, x in known.items() if n not in ("VAX", "VAY")}
+        known |= {"SAF": _within(truth["SAF"], 0.2), "HAF": _within(truth["HAF"], 0.3)}
+    tolerance = KINDS[kind]
+    shift = min(times * tolerance, 150.0) if kind in ("HAF", "PDOFA") else times * tolerance
+    known = {**known, kind: _within(truth[kind] + shift, tolerance)}
+    result = reconstruct(known, samples=0)[0]
+    if times < 1:
+        assert result.verdict in ("agrees", "at a limit")
+        return
+    assert result.verdict == "contradictory"
+    assert kind in result.evidence.at_odds
+    test = result.tests[kind]
+    assert abs(test.by_others - truth[kind]) < tolerance
+    assert f"{kind} " in evidence(result)
+
+
+def test_the_law_that_misses_is_named_with_its_amount():
+    known = {"M": 4, "MA": 3000 / 32.174, "MB": 2000 / 32.174, "UX": 40, "UY": 0, "VX": 0}
+    known |= {"VY": -30, "VAX": 20, "VAY": -10, "VBX": 10, "VBY": -15}
+    result = reconstruct(known)[0]
+    assert result.verdict == "contradictory"
+    assert result.law.law == "momentum along x"
+    assert result.law.amount == pytest.approx((3000 * 20 - 2000 * 10) / 32.174)
+    assert "momentum along x misses by 1243 lb-s" in evidence(result, View("chapter")).lower()
+    assert {law.law for law in result.laws} == {"momentum along x"}
+    assert "VBX" in result.evidence.at_odds
+    assert "The nearest one has" in refusal(result)
+
+
+def test_values_that_agree_but_for_the_rounding_of_what_was_typed():
+    vehicles, truth = random_impact(np.random.default_rng(3))
+    typed = {name: float(f"{truth[name]:.5g}") for name in MOTION}
+    result = reconstruct({**vehicles, **typed})[0]
+    assert result.verdict == "agrees"
+    assert result.values["E"] == pytest.approx(truth["E"], abs=0.01)
+
+
+def test_energy_that_is_gained_is_impossible():
+    known = {"M": 4, "MA": 3000, "MB": 2000, "HA": 0, "HB": 0, "SAF": 30, "HAF": 0, "SBF": 45}
+    result = reconstruct({**known, "HBF": 0, "SB": 30})[0]
+    assert result.verdict == "impossible"
+    assert result.is_adverse
+    assert {"energy", "E"} <= set(result.broken)
+    assert "energy would be gained" in refusal(result)
+    assert result.values["SA"] == pytest.approx(40)
+
+
+def test_a_vehicle_that_drives_backwards_is_named():
+    known = {"M": 4, "MA": 1000, "MB": 1000, "HA": 0, "SB": 0, "E": 0, "MU": -10}
+    result = reconstruct({**known, "VBX": -10})[0]
+    assert any(
+        line.startswith("A drives backwards along its known course HA") for line in remarks(result)
+    )
+
+
+def test_baarda_and_chi_square():
+    result = reconstruct(RECORDER, samples=0)[0]
+    assert (round(result.evidence.squares, 2), result.evidence.redundancy) == (1.39, 1)
+    assert round(result.evidence.probability, 2) == 0.24
+    assert result.values["E"] == pytest.approx(0.19, abs=0.01)
+    # one redundant value: all residuals have the size of the root of the sum of squares
+    sizes = {abs(test.residual) for test in result.tests.values() if test.residual}
+    assert max(sizes) == pytest.approx(result.evidence.squares**0.5)
+    assert min(sizes) == pytest.approx(max(sizes))
+
+
+@pytest.mark.parametrize(("x", "degrees"), [(0.5, 1), (3.2, 2), (11.1, 3), (40.0, 8), (2000.0, 4)])
+def test_chi_square_tail(x, degrees):
+    assert chi_square_tail(x, degrees) == pytest.approx(chi2.sf(x, degrees), rel=1e-9, abs=1e-300)
+
+
+def test_stopping_rule():
+    # Boender and Rinnooy Kan 1987: (W (N - 1) / (N - W - 2)) minima are expected in all
+    assert expected_unseen(3, 120) == pytest.approx(3 * 119 / 115 - 3)
+    assert expected_unseen(3, 5) == np.inf
+
+
+def _staged(number, sd=3.0):
+    """Return a staged collision with Table 2's weights: 25 ft² on the squares of spins."""
+    collision = next(c for c in collisions() if c.number == number)
+    known = {name: Amount.exactly(x) for name, x in collision.scene.items()}
+    for name, x in collision.measured.items():
+        if np.isfinite(x):
+            known[name] = Amount(x, -np.inf, np.inf, "normal", sd / 5 if name[0] == "W" else sd)
+    return collision, known
+
+
+@pytest.mark.parametrize("number", [1, 5, 8, 9, 11])
+def test_staged_collisions_have_the_friction_of_table_2(number):
+    collision, known = _staged(number)
+    result = reconstruct(known, samples=0)[0]
+    assert result.verdict in ("agrees", "at a limit")
+    assert -1e-6 <= result.values["E"] <= 1
+    assert -1 - 1e-6 <= result.values["EM"] <= 1e-6
+    assert abs(result.values["MUP"] - collision.coefficients["MUP"]) <= 0.1
+
+
+@pytest.mark.parametrize("number", [6, 9])
+def test_nearest_impact_within_physics_is_that_of_another_method(number):
+    from scipy.optimize import minimize
+
+    _, known = _staged(number)
+    problem = Problem(known)
+    search = Search(problem)
+    start = search.run()[0][0].point / search.sizes
+
+    def within(x):
+        rows = problem.margins(problem.impacts(search.names, x[None] * search.sizes))
+        return np.array([np.ravel(row)[0] for _, row in rows])
+
+    ends = [
+        minimize(
+            lambda x: float((search.residuals(x[None])[0] ** 2).sum()),
+            start + np.random.default_rng(k).normal(0, 0.3, len(start)) * bool(k),
+            constraints=[{"type": "ineq", "fun": within}],
+            method="SLSQP",
+        )
+        for k in range(6)
+    ]
+    best = min(end.fun for end in ends if within(end.x).min() > -1e-7)
+    found = Search(problem, limited=True).run(0, [search.run()[0][0].point])[0]
+    assert min(f.squares for f in found if f.missed < 1e-5) == pytest.approx(best, rel=2e-3)
+
+
+def test_what_is_open_and_what_would_help():
+    result = reconstruct(SECTION_VII, samples=0)[0]
+    assert {"WA", "WB", "WAF", "WBF", "E", "EM"} <= set(result.undetermined)
+    assert result.advice == ("WAF", "WBF", "WA")
+    more = {**SECTION_VII, "WAF": -2.9, "WBF": -0.9, "WA": 0}
+    assert not reconstruct(more, samples=0)[0].undetermined
+    assert list(result.drivers["UX"]) == ["VBX", "VAX"]
+    assert result.drivers["UX"]["VBX"] == pytest.approx(145**2 / (145**2 + 96**2))
+    assert result.correlations["DVB", "DVA"] == pytest.approx(1.0)
