@@ -1,6 +1,4 @@
-"""The pages: what is asked, found, sure, assumed, and would help; the JSON form."""
-
-import json
+"""The page: what is asked, found, how sure it is, what was assumed, what would help."""
 
 import pytest
 from collisions import INTERSECTION, REAR_END, RECORDER, SECTION_VII
@@ -9,12 +7,8 @@ from impact88.cases.case import Case
 from impact88.cases.units import View
 from impact88.errors import UserError
 from impact88.reconstruction.answer import reconstruct
-from impact88.reconstruction.bounds import bounds
 from impact88.reconstruction.words import (
     advice,
-    as_json,
-    bounds_json,
-    bounds_text,
     question,
     remarks,
     text,
@@ -79,30 +73,13 @@ def test_first_lines_and_the_rest():
     assert "1 impact; expected number not seen 0.0" in " ".join(remarks(results[0]))
 
 
-def test_json_in_the_units_of_the_view():
+def test_units_of_the_view():
     metric = Case.of(INTERSECTION, view=View("metric"))
-    record = json.loads(json.dumps(as_json(reconstruct(metric.entries), View("metric"))))
-    assert record["form"] == "impact88 reconstruction 1"
-    found = record["impacts"][0]["results"]
-    assert found["SA"]["value"] == pytest.approx(55.62, abs=0.01)
-    assert found["SA"]["unit"] == "km/h"
-    record = json.loads(json.dumps(as_json(reconstruct(RECORDER))))["impacts"][0]
-    assert record["evidence"]["redundancy"] == 1
-    assert record["checks"]["DVA"]["by_others"] == pytest.approx(2.837, abs=1e-3)
-    low, high = record["results"]["DVA"]["interval"]
-    assert low < record["results"]["DVA"]["value"] < high
-
-
-def test_bounds_as_page_and_json():
-    found = bounds({"M": 4, "MA": 2, "MB": "1 .. 3", "UX": 1, "UY": 0, "VX": 0, "VY": 0}, "KI")
-    page = bounds_text(found)
-    assert (
-        page.splitlines()[0].split()
-        == "nominal lower upper 2.5 % 5 % 50 % 95 % 97.5 % unit".split()
+    page = text(reconstruct(metric.entries), View("metric"))
+    assert "BEFORE A   55.62 km/h; course 0 deg" in page
+    assert "DVA 3.1 measured, 2.837 by the others (1.5 sd)" in text(
+        reconstruct(RECORDER), full=True
     )
-    assert "driven by" in page
-    record = json.loads(json.dumps(bounds_json(found)))
-    assert record["outputs"]["KI"]["bounds"] == [1.0, 1.0]
 
 
 def test_a_scene_for_the_1988_program():

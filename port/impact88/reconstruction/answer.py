@@ -158,8 +158,19 @@ class Reconstruction:
         Results that need inputs that are not given.
     remarks : tuple of str
         What was made of the problem.
-    search : Search facts
+    search : tuple of int, int, float
         Starts that ended in an impact, impacts, expected number not seen.
+    known : mapping of str to Amount
+        What was known.
+    point : bool
+        True for point masses.
+
+    Examples
+    --------
+    >>> known = {"M": 4, "MA": 950, "MB": 770, "SA": "5.5 +- .2", "HA": 0, "SB": 0, "E": 0.2}
+    >>> found = impact88.reconstruct(known, samples=0)[0]
+    >>> found.verdict, round(found.values["DVA"], 2), found.drivers["DVA"]
+    ('agrees', 2.95, {'SA': 1.0})
     """
 
     values: Mapping[str, float]

@@ -83,6 +83,12 @@ class Bounds:
         Number of draws.
     draws : mapping of str to ndarray
         The draws by result.
+
+    Examples
+    --------
+    >>> found = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, "LOSS", samples=100)
+    >>> round(found.outputs["LOSS"].lower, 2), found.outputs["LOSS"].at_lower
+    (52.93, {'MU': 0.7})
     """
 
     inputs: Mapping[str, Amount]

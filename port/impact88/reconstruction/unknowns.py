@@ -38,6 +38,13 @@ class Solution:
         By how much equations more than needed miss, as a velocity.
     agrees : ndarray of bool
         False where the sign of the friction does not oppose the sliding (line 400).
+
+    Examples
+    --------
+    >>> known = {"M": 4, "MA": 3, "MB": 2, "GA": 0, "UX": -3, "UY": 0, "VY": 0, "VAX": 1, "VBX": 2}
+    >>> (found,) = impact88.solve_for(known)
+    >>> print(found["VX"].round(2), found.mismatch.round(2))
+    8.0 0.0
     """
 
     values: Mapping[str, Array]

@@ -1,4 +1,4 @@
-"""Reconstructions and bounds in words, as pages, and as objects for JSON.
+"""Reconstructions in words: the sentences that reports print, and a page of its own.
 
 The first lines say what was asked, what was found, whether the evidence agrees, what was assumed,
 and what would help; ``full`` adds the rest.
@@ -7,20 +7,16 @@ and what would help; ``full`` adds the rest.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from textwrap import fill
 from typing import Any
 
 from ..cases.units import PLAIN, View
+from ..layout import paragraph
 from ..mechanics.laws import LAWS
 from ..names import quantity
 from .answer import CONTRADICTION, Reconstruction, Test
-from .bounds import Bounds
 from .impacts import SPEEDS
 
-FORM = "impact88 reconstruction 1"
-"""Name and version of the form that `as_json` returns."""
-BOUNDS_FORM = "impact88 bounds 1"
-WIDTH = 96  # columns of a page
+INDENT = 11  # columns of a label
 POOR = 0.05  # probability below which values agree poorly
 MAX_MOVES = 3  # values that would have to move, named
 ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
@@ -240,7 +236,7 @@ def _page(result: Reconstruction, view: View) -> list[str]:
     rows += [("ASSUMED", "; ".join(assumptions(result)))] if result.assumed else []
     rows += [("HELPS", sentence) for sentence in advice(result)]
     rows += [("!", remark) for remark in remarks(result)]
-    return [_filled(title, words) for title, words in rows if words]
+    return [line for title, words in rows if words for line in paragraph(words, title, INDENT)]
 
 
 def _motion(result: Reconstruction, vehicle: str, suffix: str, view: View) -> str:
@@ -282,7 +278,7 @@ def _rest(result: Reconstruction, view: View) -> list[str]:
         if depends:
             lines.append(f"{'':6} through {depends}")
     if result.undetermined:
-        lines += ["", _filled("OPEN", ", ".join(result.undetermined))]
+        lines += ["", *paragraph(", ".join(result.undetermined), "OPEN", INDENT)]
     if result.tests:
         lines += ["", "measured values beside the others"]
         lines += [f"  {check(name, test, view)}" for name, test in result.tests.items()]
@@ -293,131 +289,7 @@ def _rest(result: Reconstruction, view: View) -> list[str]:
     return lines
 
 
-def bounds_text(found: Bounds, view: View = PLAIN) -> str:
-    """Return bounds as a page.
-
-    Parameters
-    ----------
-    found : Bounds
-        The bounds.
-    view : View, optional
-        Units, axes and headings of the numbers.
-    """
-    quantiles = [f"{100 * q:g} %" for q in next(iter(found.outputs.values())).quantiles]
-    rows = [["", "nominal", "lower", "upper", *quantiles, "unit"]]
-    for name, bound in found.outputs.items():
-        lower, upper = view.shown_ends(name, bound.lower, bound.upper)
-        drawn = [float(view.shown(name, x)) for x in bound.quantiles.values()]
-        drawn = drawn if drawn[0] <= drawn[-1] else drawn[::-1]
-        numbers = (view.shown(name, bound.nominal), lower, upper, *drawn)
-        rows.append([name, *(f"{x:.5g}" for x in numbers), view.unit(name)])
-    lines = ["".join(cell.rjust(10) for cell in row) for row in rows]
-    lines += ["", "driven by: rank correlation, and range of the result with that input alone"]
-    for name, bound in found.outputs.items():
-        factor = abs(float(view.shown(name, 1.0)) - float(view.shown(name, 0.0)))
-        parts = (f"{n} {r:+.2f} ({factor * x:.4g})" for n, (r, x) in bound.drivers.items())
-        lines.append(_filled(name, "  ".join(parts)))
-    lines += [f"{100 * x:.3g} % of the draws: {name}" for name, x in found.warnings.items()]
-    lines += [
-        "lower, upper: least and greatest values found within all limits; "
-        f"quantiles: {found.samples:,} draws"
-    ]
-    return "\n".join(lines)
-
-
-# -- JSON
-
-
-def as_json(results: Sequence[Reconstruction], view: View = PLAIN) -> dict[str, Any]:
-    """Return reconstructions as an object for JSON, see `FORM`.
-
-    Parameters
-    ----------
-    results : sequence of Reconstruction
-        The impacts.
-    view : View, optional
-        Units, axes and headings of the numbers.
-    """
-    return {"form": FORM, "impacts": [_impact_json(result, view) for result in results]}
-
-
-def _impact_json(result: Reconstruction, view: View) -> dict[str, Any]:
-    found, evidence_ = {}, result.evidence
-    for name in (*result.values, *result.undetermined):
-        record: dict[str, Any] = {"unit": view.unit(name)}
-        if name in result.values:
-            record["value"] = float(view.shown(name, result.values[name]))
-        if name in result.deviations:
-            record["sd"] = _scaled(name, result.deviations[name], view)
-        for key, ends in (("interval", result.intervals), ("bounds", result.bounds)):
-            if name in ends:
-                record[key] = list(view.shown_ends(name, *ends[name]))
-        if name in result.drivers:
-            record["drivers"] = dict(result.drivers[name])
-        found[name] = record
-    return {
-        "verdict": result.verdict,
-        "question": question(result),
-        "refusal": refusal(result, view),
-        "results": found,
-        "evidence": {
-            "text": evidence(result, view),
-            "squares": evidence_.squares,
-            "redundancy": evidence_.redundancy,
-            "probability": evidence_.probability,
-            "at_odds": list(evidence_.at_odds),
-        },
-        "checks": {
-            name: {
-                "measured": float(view.shown(name, test.measured)),
-                "adjusted": float(view.shown(name, test.adjusted)),
-                "by_others": float(view.shown(name, test.by_others)),
-                "residual": test.residual,
-            }
-            for name, test in result.tests.items()
-        },
-        "assumed": dict(result.assumed),
-        "advice": list(advice(result)),
-        "correlations": [[a, b, x] for (a, b), x in result.correlations.items()],
-        "remarks": list(remarks(result)),
-        "solutions": result.solutions,
-    }
-
-
-def bounds_json(found: Bounds, view: View = PLAIN) -> dict[str, Any]:
-    """Return bounds as an object for JSON, see `BOUNDS_FORM`."""
-    outputs = {}
-    for name, bound in found.outputs.items():
-        outputs[name] = {
-            "unit": view.unit(name),
-            "nominal": float(view.shown(name, bound.nominal)),
-            "bounds": list(view.shown_ends(name, bound.lower, bound.upper)),
-            "at_lower": {n: float(view.shown(n, x)) for n, x in bound.at_lower.items()},
-            "at_upper": {n: float(view.shown(n, x)) for n, x in bound.at_upper.items()},
-            "quantiles": {f"{q:g}": float(view.shown(name, x)) for q, x in bound.quantiles.items()},
-            "drivers": {
-                n: {"rank_correlation": r, "range": _scaled(name, x, view)}
-                for n, (r, x) in bound.drivers.items()
-            },
-        }
-    return {
-        "form": BOUNDS_FORM,
-        "outputs": outputs,
-        "warnings": dict(found.warnings),
-        "samples": found.samples,
-    }
-
-
-def _scaled(name: str, size: float, view: View) -> float:
-    """Return a difference in the unit shown."""
-    return abs(float(view.shown(name, size)) - float(view.shown(name, 0.0)))
-
-
 def _join(names: Iterable[str]) -> str:
     """Return names as in "A, B and C"."""
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else str(last)
-
-
-def _filled(title: str, words: str) -> str:
-    return fill(f"{title:10} {words}", WIDTH, subsequent_indent=" " * 11)
