@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from . import names as names
     from . import status as status
     from .apple.emulator.emulator import Applesoft as Applesoft
+    from .cases.amounts import Amount as Amount
     from .casework.figures.canvas import Svg as Svg
     from .casework.figures.sceneview import scene_svg as scene_svg
-    from .cases.amounts import Amount as Amount
     from .chapter.barrier import barrier as barrier
     from .chapter.colinear import colinear as colinear
     from .chapter.colinear import colinear_inverse as colinear_inverse
