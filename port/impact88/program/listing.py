@@ -10,8 +10,9 @@ under ``if not c``. NEXT adds one and goes round again unless the limit is passe
 runs at least once and its variable ends one past the limit. NL ends a PRINT that no ``;`` ends. The
 subroutines at 1000 and 1070 are functions that share the variables.
 
-The port does not track line numbers: the BASIC line being executed is found from the comment above the Python
-line being executed (`run.basic_line`), for the line of an error and for stopping after every line.
+The port does not track line numbers: the BASIC line being executed is found from the comment above
+the Python line being executed (`run.basic_line`), for the line of an error and for stopping after
+every line.
 """
 
 from __future__ import annotations
