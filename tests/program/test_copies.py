@@ -11,7 +11,7 @@ import pytest
 from impact88.errors import UserError
 from impact88.files import packaged_text
 from impact88.names import SCENE
-from impact88.program.copies import ListingCopy
+from impact88.program.copies import ListingCopy, run_emulated
 from impact88.program.replay import replay
 from impact88.program.run import run
 from impact88.program.scene import sample
@@ -120,6 +120,14 @@ def test_the_listing_itself_prints_what_replay_does(tmp_path):
     copy = copy_of(LISTING, tmp_path)
     assert copy.changed_lines() == []
     assert copy.pages(COLUMNS) == replay(COLUMNS, pages=True).pages
+
+
+def test_small_letters_are_typed_as_capitals(tmp_path):
+    scene = sample(1).replaced({"IA": "3.7e3", "UX": "-2.9e1"})
+    page = run(scene).page
+    assert "IA= 3700" in page
+    assert copy_of(LISTING, tmp_path).run(scene).page == page
+    assert run_emulated(scene).page == page
 
 
 def test_changed_lines(tmp_path):

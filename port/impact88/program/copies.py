@@ -55,7 +55,7 @@ def load_machine(
     machine = Applesoft(dos=dos, blanks=False)
     machine.load(text or files.packaged_text("impact88.legacy", LISTING))
     for line in scene.typed_lines():
-        machine.enter(line)
+        machine.type_line(line)
     if slot:
         machine.enter(f'190 P$ = "PR# " + "{slot}"')
     machine.feed(*scene.keyboard())
@@ -267,7 +267,7 @@ class ListingCopy:
                     start = next(token.stop for token in statement if token.text == "=")
                     value = scene.get(self._names[key], text[start:stop])
                 if value:
-                    pieces += [text[end:start], value]
+                    pieces += [text[end:start], value.upper()]
                     end = stop
             yield number, tokenise("".join((*pieces, text[end:])))
 
