@@ -19,15 +19,8 @@ SCENE = 'units = "us"\nMA = {value = "2,000 lb", source = "x"}\nIA = "estimate"\
 def damaged(data: bytes, rng: random.Random) -> bytes:
     for _ in range(rng.choice((1, 2, 5))):
         at, to = sorted(rng.randrange(len(data) + 1) for _ in range(2))
-        change = rng.randrange(4)
-        if change == 0:
-            data = data[:at] + rng.choice(PIECES) + data[at:]
-        elif change == 1:
-            data = data[:at] + data[at + rng.randrange(40) :]
-        elif change == 2:
-            data = data[:to] + data[at:to] + data[to:]
-        else:
-            data = data[:at] + bytes([rng.randrange(256)]) + data[at + 1 :]
+        piece = rng.choice((rng.choice(PIECES), data[at:to], rng.randbytes(1)))
+        data = data[:at] + piece + data[at + rng.choice((0, 1, 40)) :]
     return data
 
 

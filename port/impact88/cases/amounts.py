@@ -250,7 +250,7 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
     >>> read("TB", "271 +- 1 %", View(headings="compass")).low
     -183.71
     """
-    words = normalized(text)
+    words = normalize(text)
     if match := _SKID.fullmatch(words):
         return _skid(name, match[1], match[2], view)
     if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
@@ -269,7 +269,7 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
         raise UserError(f"{name} = {quoted(text)} is beyond the range of doubles") from None
 
 
-def normalized(text: str) -> str:
+def normalize(text: str) -> str:
     """Return a text with one spelling of signs and blanks."""
     return " ".join(text[: MAX_LENGTH + 1].translate(_SPELLINGS).replace("+/-", TOLERANCE).split())
 
@@ -277,7 +277,7 @@ def normalized(text: str) -> str:
 def units_in(name: str, text: str) -> list[tuple[str, str]]:
     """Return rule and symbol of the unit of an amount, none if it is a bare number. Raises
     UserError for a text that is no amount."""
-    words = normalized(text)
+    words = normalize(text)
     if match := _SKID.fullmatch(words):
         return units_in("DA", match[1])
     unit = parse(name, words, None).unit
@@ -285,7 +285,7 @@ def units_in(name: str, text: str) -> list[tuple[str, str]]:
 
 
 def parse(name: str, words: str, usual: str | None) -> Notation:
-    """Return the notation of a `normalized` text.
+    """Return the notation of a `normalize`d text.
 
     ``usual``: the unit of a bare number, which decides what its comma means; None takes any comma.
     Raises UserError."""

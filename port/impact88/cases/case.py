@@ -17,7 +17,7 @@ from ..decimals import is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..files import decode, display_name, read_bytes
 from ..names import DEFAULT_M, PIVOT, SCENE, did_you_mean, quantity
-from .amounts import TOLERANCE, Amount, normalized, read, units_in
+from .amounts import TOLERANCE, Amount, normalize, read, units_in
 from .estimates import estimate
 from .motion import contact_point, courses, headings, line_of_motion
 from .plausibility import implausible
@@ -193,7 +193,7 @@ class Case:
         texts: dict[str, Any] = dict(self.written)
         changes = {**(changes or {}), **entries}
         for name, value in changes.items():
-            text = normalized(value) if isinstance(value, str) else value
+            text = normalize(value) if isinstance(value, str) else value
             if isinstance(text, str) and text.startswith(TOLERANCE):
                 text = f"{self._middle(name)} {text}"
             texts[name] = text
@@ -310,8 +310,8 @@ class _Reader:
         """Return the case."""
         self._check_names()
         words = {n: self.about[n] for n in ("units", "axes", "headings") if n in self.about}
-        named = View.of(self.source, **words)
-        self.view = replace(self.defaults, **{name: getattr(named, name) for name in words})
+        file_view = View.of(self.source, **words)
+        self.view = replace(self.defaults, **{name: getattr(file_view, name) for name in words})
         if not self.view.units:
             self._infer_units()
         self._read_entries()
@@ -360,13 +360,13 @@ class _Reader:
 
     def _infer_units(self) -> None:
         """Take the system that the units beside the numbers name."""
-        used: list[tuple[str, str]] = []
+        units_used: list[tuple[str, str]] = []
         for name, value in self.given.items():
             if any(map(str.isdigit, str(value))) and not str(value).startswith(ESTIMATE):
                 with self._naming(name):
-                    used += units_in(name, value) if isinstance(value, str) else []
+                    units_used += units_in(name, value) if isinstance(value, str) else []
         with self._naming(""):
-            units = system_using(used)
+            units = system_using(units_used)
         self.view, self.is_inferred = replace(self.view, units=units), bool(units)
 
     def _read_entries(self) -> None:
@@ -412,7 +412,7 @@ class _Reader:
         if mass is None:
             raise UserError(f"{name} = {text} needs M{name[1]}")
         value, rule = estimate(name, mass.value, sizes, self.view)
-        tolerance = normalized(text).removeprefix(ESTIMATE)
+        tolerance = normalize(text).removeprefix(ESTIMATE)
         self.entries[name] = read(name, f"{to_text(value)}{tolerance}", self.view)
         self.estimated.append(name)
         self.remarks.append(f"{name} = {value:g} {self.view.unit(name)} is estimated: {rule}")

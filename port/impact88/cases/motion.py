@@ -1,5 +1,5 @@
-"""What the motion of the vehicles says of a case: headings, the contact plane of a collision along
-one line, and the contact point in a vehicle's own axes."""
+"""Headings and the contact plane that follow from the motion, and the contact point in a vehicle's
+own axes."""
 
 from __future__ import annotations
 

@@ -116,11 +116,11 @@ def _units() -> dict[tuple[str, str], Unit]:
         rule, side, size, spellings = (cell.strip() for cell in row.split("|"))
         symbols = spellings.split()
         unit = Unit(symbols[0], _size(size), side)
-        units |= {(rule, _normalized(symbol)): unit for symbol in symbols}
+        units |= {(rule, _normalize(symbol)): unit for symbol in symbols}
     return units
 
 
-def _normalized(symbol: str) -> str:
+def _normalize(symbol: str) -> str:
     """Return a spelling of a unit without blanks, marks of products and powers, and capitals."""
     return re.sub(r"[\s·*.^-]", "", symbol.replace("²", "2").replace(" per ", "/")).lower()
 
@@ -128,7 +128,7 @@ def _normalized(symbol: str) -> str:
 def unit_of(rule: str, symbol: str) -> Unit:
     """Return the unit of a rule that a text spells. Raises UserError if it does not measure the
     quantity."""
-    unit = _units().get((rule, _normalized(symbol)))
+    unit = _units().get((rule, _normalize(symbol)))
     if unit is None:
         choices = dict.fromkeys(u.symbol for (r, _), u in _units().items() if r == rule)
         kind = "a ratio" if rule == NUMBER else rule.replace("·", " ")
@@ -188,7 +188,7 @@ right, forward and PDOF are a vehicle's own and do not change."""
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """How a file shows its numbers, and how results are shown to its reader.
+    """Units, axes and headings in which a file shows its numbers and results.
 
     Parameters
     ----------

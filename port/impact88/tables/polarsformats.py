@@ -107,13 +107,13 @@ def read_excel(path: str) -> Table:
     def blocks() -> Iterator[Block]:
         for start in range(0, words.height, BLOCK_ROWS):
             parts = numbers.slice(start, BLOCK_ROWS), words.slice(start, BLOCK_ROWS)
-            columns = {n: _mixed(parts[0][n], parts[1][n]) for n in names}
+            columns = {n: _merge_cells(parts[0][n], parts[1][n]) for n in names}
             yield Block(columns, _numbers(at + 2 + start, parts[1]))
 
     return Table(names, blocks(), path, remarks=tuple(remarks))
 
 
-def _mixed(numbers: Any, texts: Any) -> Column:
+def _merge_cells(numbers: Any, texts: Any) -> Column:
     """Return a sheet's column: numbers, or texts where a cell is one."""
     if numbers.null_count() == texts.null_count():
         return numbers.fill_null(float("nan")).to_numpy()
@@ -164,19 +164,19 @@ def frame_of_texts(columns: Mapping[str, Column]) -> Any:
 
 def write_parquet(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
     """Write blocks as Parquet."""
-    _whole(blocks).write_parquet(file)
+    _concatenate(blocks).write_parquet(file)
 
 
 def write_excel(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
     """Write blocks as a workbook; texts that begin with = stay texts. Raises UserError for more
     rows than a sheet has."""
     library("xlsxwriter", "tables", "an .xlsx")
-    frame = _whole(blocks)
+    frame = _concatenate(blocks)
     if frame.height >= MAX_SHEET_ROWS:
         raise UserError(f"a sheet has {MAX_SHEET_ROWS:,} rows; expected fewer, or .parquet")
     frame.write_excel(file, autofilter=False)
 
 
-def _whole(blocks: Iterable[Mapping[str, Column]]) -> Any:
+def _concatenate(blocks: Iterable[Mapping[str, Column]]) -> Any:
     """Return blocks as one frame."""
     return polars().concat([frame_of(columns) for columns in blocks], how="vertical_relaxed")

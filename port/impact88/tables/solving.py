@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cases.amounts import Amount, normalized, read
+from ..cases.amounts import Amount, normalize, read
 from ..cases.case import COURSE, MAX_TYPED, OPTIONAL_OF_POINTS, Case
 from ..cases.estimates import estimate
 from ..cases.plausibility import implausible
@@ -267,7 +267,7 @@ class Solver:
         empty = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
         for name, values in results.items():
             values[bad] = empty.get(name, math.nan)
-        columns = {heading: reading.kept(heading) for heading in self.kept}
+        columns = {heading: reading.output_column(heading) for heading in self.kept}
         for name, values in results.items():
             is_result = name in RESULTS
             columns[self.view.heading(name) if is_result else name] = (
@@ -288,10 +288,10 @@ class Solver:
         if not reading.count:
             empty = np.zeros(0)
             return dict.fromkeys((*self.results, "ERROR", "LINE"), empty)
-        replayed = replay(texts)
-        error = np.where(replayed.zero_determinant, ZERO_DETERMINANT, replayed.error)
-        results = {name: replayed.floats(name) for name in self.results}
-        return {**results, "ERROR": error, "LINE": np.array(replayed.line)}
+        replay_results = replay(texts)
+        error = np.where(replay_results.zero_determinant, ZERO_DETERMINANT, replay_results.error)
+        results = {name: replay_results.floats(name) for name in self.results}
+        return {**results, "ERROR": error, "LINE": np.array(replay_results.line)}
 
     @np.errstate(all="ignore")
     def _remark(self, columns: Mapping[str, Floats], block: Block) -> None:
@@ -451,7 +451,7 @@ class _Reading:
             texts.append(text)
         return texts
 
-    def kept(self, heading: str) -> Column:
+    def output_column(self, heading: str) -> Column:
         """Return a column of the table for the output."""
         solver, name = self.solver, heading_name(heading)[0]
         if name in solver.replaced and name in solver.case.texts:
@@ -565,7 +565,7 @@ def _in_view(case: Case, view: View) -> Case:
         return case
     for name, text in case.written.items():
         is_measured = name in SCENE and SCENE[name].unit in DIMENSIONS
-        is_bare = isinstance(text, str) and normalized(text)[-1:].isdigit()
+        is_bare = isinstance(text, str) and normalize(text)[-1:].isdigit()
         if is_measured and is_bare and case.place(name) != "--set":
             message = f'{name} = {text} has no unit, and the columns have; expected units = "..."'
             raise UserError(message, case.place(name))

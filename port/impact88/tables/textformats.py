@@ -92,7 +92,7 @@ def read_csv(path: str, encoding: str = "") -> Table:
     chunks = _chunks(source, where)
     first = next(chunks, b"")
     if encoding or encoding_of(first) != "utf-8":
-        first, chunks = _recoded(b"".join([first, *chunks]), where, encoding), iter(())
+        first, chunks = _recode(b"".join([first, *chunks]), where, encoding), iter(())
     text = _utf8(first, where, 0)
     head = text.split("\n", 1)[0]
     delimiter = max(",;\t", key=head.count)
@@ -149,7 +149,7 @@ def _with_newlines(data: bytes) -> bytes:
     return data.replace(b"\r\n", b"\n") if b"\r" in data else data
 
 
-def _recoded(data: bytes, where: str, encoding: str) -> bytes:
+def _recode(data: bytes, where: str, encoding: str) -> bytes:
     """Return text in an encoding, by default that of its mark, as UTF-8. Raises UserError."""
     try:
         text = data.decode(encoding) if encoding else decode(data, where)
