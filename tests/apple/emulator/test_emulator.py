@@ -15,6 +15,7 @@ from impact88.apple.emulator.machine import Machine
 from impact88.apple.emulator.programfile import read_program
 from impact88.apple.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
 from impact88.program import copies
+from impact88.program.scene import Scene
 
 SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
 """The port replays the others, and is compared with the emulator line by line."""
