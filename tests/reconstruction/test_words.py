@@ -1,4 +1,4 @@
-"""The page: what is asked, found, how sure it is, what was assumed, what would help."""
+"""In words: what is asked, how sure it is, what was assumed, what would help."""
 
 import pytest
 from collisions import INTERSECTION, REAR_END, RECORDER, SECTION_VII
@@ -9,9 +9,13 @@ from impact88.errors import UserError
 from impact88.reconstruction.answer import reconstruct
 from impact88.reconstruction.words import (
     advice,
+    assumptions,
+    check,
+    drivers,
+    evidence,
     question,
+    refusal,
     remarks,
-    text,
 )
 
 SKID = """
@@ -28,58 +32,43 @@ HAF = 0
 
 
 def test_intersection_of_the_guide():
-    page = text(reconstruct(INTERSECTION))
-    for line in (
-        "ASKED      SA and SB, from 8 exact values",
-        "BEFORE A   55.62; course 0",
-        "BEFORE B   63.21; course -90",
-        "DELTA-V A  36.51; force from 10 o'clock (-61.68)",
-        "DELTA-V B  54.76; force from 1 o'clock (28.32)",
-        "EVIDENCE   not checked: no more is known than needed",
-        "ASSUMED    A faces the way it travels; B faces the way it travels",
-        "!          E, MUP, PN, PT, VC, VS and MUC need GA (angle of the impact surface",
-    ):
-        assert line in page
+    result = reconstruct(INTERSECTION)[0]
+    assert question(result) == "SA and SB, from 8 exact values"
+    assert evidence(result) == "not checked: no more is known than needed"
+    assert assumptions(result) == ("A faces the way it travels", "B faces the way it travels")
+    assert remarks(result)[-1].startswith("E, MUP, PN, PT, VC, VS and MUC need GA (angle of the")
+    values = {name: round(result.values[name], 2) for name in ("SA", "SB", "DVA", "PDOFA", "PDOFB")}
+    assert values == {"SA": 55.62, "SB": 63.21, "DVA": 36.51, "PDOFA": -61.68, "PDOFB": 28.32}
+    assert not refusal(result)
 
 
 def test_rear_end_and_skids_of_the_guide():
-    page = text(reconstruct(REAR_END))
-    assert "DELTA-V A  2.955; force from 12 o'clock (0)" in page
-    assert "DELTA-V B  3.645; force from 6 o'clock (180)" in page
-    assert "the motion is along one line" in page
+    result = reconstruct(REAR_END)[0]
+    assert (round(result.values["DVA"], 2), round(result.values["DVB"], 2)) == (2.95, 3.65)
+    assert (result.values["PDOFA"], abs(result.values["PDOFB"])) == (0, 180)
+    assert remarks(result)[0].startswith("the motion is along one line")
     case = Case.loads(SKID)
-    page = text(reconstruct(case.entries), case.view)
-    assert "BEFORE A   15 m/s; course 0 deg" in page
-    assert "AFTER B    4.687 m/s; course 0 deg" in page
+    values = reconstruct(case.entries)[0].values
+    assert (round(values["SA"], 1), round(values["SBF"], 2)) == (15.0, 4.69)
 
 
-def test_first_lines_and_the_rest():
-    results = reconstruct(SECTION_VII)
-    page = text(results).splitlines()
-    titles = list(dict.fromkeys(line[:10].strip() for line in page if line[:1].strip()))
-    assert titles[:3] == ["ASKED", "BEFORE A", "BEFORE B"]
-    assert titles[-4:] == ["EVIDENCE", "ASSUMED", "HELPS", "!"]
-    assert max(map(len, page)) <= 96
-    assert advice(results[0])[0].startswith("give WAF, WBF and WA: that would determine WA, WB")
-    assert "know VBX more closely: it makes 70 % of the variance of SA" in advice(results[0])
-    full = text(results, full=True)
-    assert "through VBX 70 %, VAX 30 %" in full
-    assert "correlations, to first order" in full
-    assert "DVB DVA +1.00" in full
-    assert (
-        "SA, SB, E, MUP and EM, from VAX, VAY, VBX and VBY within limits and 13 exact"
-        in question(results[0])
+def test_section_vii_in_words():
+    result = reconstruct(SECTION_VII)[0]
+    assert question(result) == (
+        "SA, SB, E, MUP and EM, from VAX, VAY, VBX and VBY within limits and 13 exact values"
     )
-    assert "1 impact; expected number not seen 0.0" in " ".join(remarks(results[0]))
+    assert advice(result)[0].startswith("give WAF, WBF and WA: that would determine WA, WB")
+    assert "know VBX more closely: it makes 70 % of the variance of SA" in advice(result)
+    assert "E 0 to 1 (the interval reaches 0 and 1)" in assumptions(result)
+    assert drivers(result, "UX") == "VBX 70 %, VAX 30 %"
+    assert "1 impact; expected number not seen 0.0" in " ".join(remarks(result))
 
 
 def test_units_of_the_view():
-    metric = Case.of(INTERSECTION, view=View("metric"))
-    page = text(reconstruct(metric.entries), View("metric"))
-    assert "BEFORE A   55.62 km/h; course 0 deg" in page
-    assert "DVA 3.1 measured, 2.837 by the others (1.5 sd)" in text(
-        reconstruct(RECORDER), full=True
-    )
+    metric = {"SA": "20 +- 1 km/h", "DVA": "11 +- .5 km/h", "DVB": "12 +- .5 km/h"}
+    case = Case.of({**RECORDER, "MA": "950 kg", "MB": "770 kg", **metric}, view=View("metric"))
+    result = reconstruct(case.entries)[0]
+    assert "DVA 11 km/h measured, " in check("DVA", result.tests["DVA"], case.view)
 
 
 def test_a_scene_for_the_1988_program():

@@ -31,8 +31,8 @@ def read_columns(known: Mapping[str, Any], names: Sequence[str]) -> list[Array]:
     for name in names:
         value = known[name]
         try:
-            column = to_double(value) if isinstance(value, str) else np.asarray(value)
-            if getattr(column, "dtype", None) is not None and column.dtype.kind in "OSU":
+            column = np.asarray(value)
+            if column.dtype.kind in "OSU":  # texts
                 column = np.reshape([to_double(str(x)) for x in column.flat], column.shape)
             columns.append(np.asarray(column, np.float64))
         except (TypeError, ValueError):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
-from .draws import Sample, sample
+from .draws import MIN_FAMILIES, Sample, sample
 from .fit import EXACT_TOL, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
@@ -27,19 +28,13 @@ from .problem import ANGLES, ARMS, RANGES, Problem, signs_of_friction
 
 CONTRADICTION = 1e-3  # probability of a misfit below which values contradict one another
 LIKELY = 9.0  # sum of squares above the least, up to which an impact is shown
-TIE = 1e-9
+TIE = 1e-9  # differences in typical sizes that are rounding
 SOFTENED = 0.01  # tolerance of exact values that contradict one another, in typical sizes
-CHECKED = 0.02  # least part of a value's variance that the others check
+CHECKED = 0.02  # least part of a variance that counts
 NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
 MAX_NAMED = 3
-DRIVER_SHARE = 0.03  # smallest share of a variance that is named
 INTERVAL = (0.05, 0.95)
-FIRST_ORDER = (-1.645, 1.645)  # the same of a normal distribution, in standard deviations
-SLOPE_STEP = 1e-6  # of difference quotients of results, in typical sizes
-OPEN_TOL = 1e-6  # change of a result along open directions that is rounding, in typical sizes
-NOISE = 1e-11  # value of a result that is rounding, in typical sizes
-AT_LIMIT = 1e-6  # margin of a condition at which an impact lies, in typical sizes
-MIN_FAMILIES = 20  # independent draws, below which there are no intervals
+STEP = 1e-6  # of difference quotients, in typical sizes; a smaller change is rounding
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
 BOUNDED = ("SA", "SB", "DVA", "DVB")
@@ -416,7 +411,7 @@ class _Neighbourhood:
         self._shifts = np.concatenate([fit.open_directions.T, fit.sensitivity.T])
         sizes = np.array([fit.problem.size(name) for name in fit.names])
         self._lengths = np.abs(self._shifts / sizes).max(1, initial=1e-300)[:, None]
-        steps = SLOPE_STEP * self._shifts / self._lengths
+        steps = STEP * self._shifts / self._lengths
         self._moved = fit.problem.impacts(fit.names, fit.point + np.concatenate([steps, -steps]))
 
     def value(self, name: str) -> float:
@@ -434,7 +429,7 @@ class _Neighbourhood:
         change = column[:count] - column[count:]
         if name in ANGLES:
             change = (change + 180.0) % 360.0 - 180.0
-        return np.asarray(change / (2 * SLOPE_STEP) * self._lengths[:, 0])
+        return np.asarray(change / (2 * STEP) * self._lengths[:, 0])
 
     def open_slopes(self, name: str) -> Array:
         """Return changes of a result along open directions, in typical sizes."""
@@ -443,7 +438,7 @@ class _Neighbourhood:
 
     def is_open(self, name: str) -> bool:
         """Return True for a result that the known values leave open."""
-        return bool((np.abs(self.open_slopes(name)) > OPEN_TOL).any())
+        return bool((np.abs(self.open_slopes(name)) > STEP).any())
 
 
 def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruction:
@@ -460,6 +455,7 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
             values[name] = times * values["P"] / contact_time
             slopes[name] = times * slopes["P"] / contact_time
     deviations = {name: float(np.sqrt(np.square(s).sum())) for name, s in slopes.items()}
+    reach = NormalDist().inv_cdf(INTERVAL[1])
     remarks = [*problem.remarks]
     for name in driving_backwards(fit):
         remarks.append(
@@ -469,7 +465,7 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
     return Reconstruction(
         values=values | _inputs(near),
         intervals={
-            name: (values[name] + FIRST_ORDER[0] * sd, values[name] + FIRST_ORDER[1] * sd)
+            name: (values[name] - reach * sd, values[name] + reach * sd)
             for name, sd in deviations.items()
             if sd > TIE * abs(values[name])
         },
@@ -509,9 +505,9 @@ def _exists(near: _Neighbourhood, name: str) -> bool:
 
 def _without_noise(name: str, value: float, size: float) -> float:
     """Return a value without its rounding; the direction opposite to the axis is 180."""
-    if name in ANGLES and value < -180.0 + NOISE * size:
+    if name in ANGLES and value < -180.0 + TIE * size:
         return 180.0
-    return value if abs(value) > NOISE * size else 0.0
+    return value if abs(value) > TIE * size else 0.0
 
 
 def _inputs(near: _Neighbourhood) -> dict[str, float]:
@@ -535,7 +531,7 @@ def _broken(fit: Fit, verdict: str) -> dict[str, float]:
         return {}
     impacts = fit.problem.impacts(fit.names, fit.point[None])
     margins = fit.problem.margins(impacts)
-    return {name: 0.0 for name, margin in margins if float(np.ravel(margin)[0]) < AT_LIMIT}
+    return {name: 0.0 for name, margin in margins if float(np.ravel(margin)[0]) < STEP}
 
 
 # -- how far the known values agree
@@ -584,7 +580,7 @@ def _drivers(fit: Fit, slope: Array) -> dict[str, float]:
     """Return the measured values' shares of the variance of a result, largest first."""
     squares = np.square(slope)
     shares = zip((item.name for item in fit.measured), squares / squares.sum(), strict=True)
-    large = {name: float(share) for name, share in shares if share >= DRIVER_SHARE}
+    large = {name: float(share) for name, share in shares if share >= CHECKED}
     return dict(sorted(large.items(), key=lambda pair: -pair[1]))
 
 
@@ -605,12 +601,12 @@ def _advice(near: _Neighbourhood, undetermined: Sequence[str]) -> tuple[str, ...
     names: list[str] = []
     rows = np.empty((0, near.open))
     relevant = [near.open_slopes(name) for name in undetermined]
-    needed = np.linalg.matrix_rank(np.stack(relevant), OPEN_TOL) if relevant else 0
+    needed = np.linalg.matrix_rank(np.stack(relevant), STEP) if relevant else 0
     for name in ADVICE:
         if name in near.problem.known or name not in undetermined or len(names) == needed:
             continue
         more = np.concatenate([rows, near.open_slopes(name)[None]])
-        if np.linalg.matrix_rank(more, OPEN_TOL) > len(rows):
+        if np.linalg.matrix_rank(more, STEP) > len(rows):
             rows = more
             names.append(name)
     return tuple(names)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanics.laws import MAX_FRICTION
 from .densities import draw, log_density
 from .extremes import extremes
 from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array, Impacts
@@ -23,19 +24,15 @@ from .problem import RANGES, WIDEST, Known, Problem
 
 PARTICLES = 8000  # 2,000 left 45 to 80 independent families in hard problems
 KEPT_PROPORTION = 0.5  # of the effective sample size, at each power (Del Moral et al. 2006)
-FIRST_BATCHES = 60  # of points from the prior, in search of impacts that physics allows
-MIN_FIRST = 20  # impacts that physics allows, to start from
+MIN_FAMILIES = 20  # independent draws, below which they tell nothing
 EXACT_WIDTH = 5e-4  # standard deviation of exact observations, in typical sizes
 SOFT_LIMIT = 0.02  # softness of a limit while particles move, in half widths
 ACCEPTANCE = 0.25  # proportion of proposals accepted, aimed at (ter Braak 2006)
 JUMP = 2.38  # scale of a differential-evolution move, over sqrt(2 d) (ter Braak 2006)
 MODE_JUMPS = 0.05  # proportion of moves by a whole difference, between modes
-STAGE_MOVES = 3.0  # accepted moves of each particle at each power, on average
+STAGE_MOVES = 3.0  # accepted moves of each particle, on average: at each power, between draws
 LAST_MOVES = 8.0  # at the last power
-SAMPLE_MOVES = 2.0  # between draws that are kept
-MAX_SWEEPS = 20  # of draws that are kept
-MAX_ROUNDS = 100
-MAX_FRICTION_ANGLE = 1.47  # radians: |P_t/P_n| of 10
+MAX_ROUNDS = 60  # of points from the prior, of moves, and of draws that are kept
 
 
 class State(NamedTuple):
@@ -122,7 +119,8 @@ class Target:
                 continue
             name = COEFFICIENTS[IMPULSES.index(name)]
             if name == "MUP":
-                columns[name] = np.tan(rng.uniform(-MAX_FRICTION_ANGLE, MAX_FRICTION_ANGLE, count))
+                angle = np.arctan(MAX_FRICTION)
+                columns[name] = np.tan(rng.uniform(-angle, angle, count))
                 weights += np.log1p(columns[name] ** 2)
             else:
                 columns[name] = rng.uniform(*RANGES[name], count)
@@ -229,8 +227,8 @@ def sample(
         if progress is not None:
             progress(power)
     kept = [state.points[state.holds]]
-    while sum(map(len, kept)) < count and len(kept) < MAX_SWEEPS:
-        state, scale = _move(target, state, power, scale, SAMPLE_MOVES, rng)
+    while sum(map(len, kept)) < count and len(kept) < MAX_ROUNDS:
+        state, scale = _move(target, state, power, scale, STAGE_MOVES, rng)
         kept.append(state.points[state.holds])
     drawn = np.concatenate(kept)[:count]
     if not len(drawn):
@@ -242,7 +240,7 @@ def sample(
 def _first(target: Target, particles: int, rng: np.random.Generator) -> tuple[State, Array] | None:
     """Return particles of the prior that physics allows, and the log of their weights."""
     parts, number = [], 0
-    for _ in range(FIRST_BATCHES):
+    for _ in range(MAX_ROUNDS):
         points, weights = target.start(5 * particles, rng)
         state = target(points)
         rows = np.flatnonzero(np.isfinite(state.prior))
@@ -250,7 +248,7 @@ def _first(target: Target, particles: int, rng: np.random.Generator) -> tuple[St
         number += len(rows)
         if number >= 2 * particles:
             break
-    if number < MIN_FIRST:
+    if number < MIN_FAMILIES:
         return None
     states, columns = zip(*parts, strict=True)
     state = State(*(np.concatenate(column) for column in zip(*states, strict=True)))

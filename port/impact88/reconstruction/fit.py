@@ -26,13 +26,10 @@ MAX_UNSEEN = 0.05  # expected number of minima not seen, at which starts end
 MAX_IMPACTS = 24
 RIDGE = 0.1  # sum of squares that separates two minima
 STAGES = ((1e-2, 12), (1e-4, 12), (1e-6, 16))  # tolerance of exact values, in sizes; iterations
-LAST_STAGE = ((1e-6, 30),)  # where all values are exact, or none
 EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
 CANDIDATE_TOL = 1e-4  # misfit at which iterations end near an impact
-DIFFERENCE_STEP = 1e-7
-RANK_TOL = 1e-7  # singular values below, relative to the largest, are 0
-INSIDE_TOL = 1e-7  # beyond a limit of physics by less, it holds
+STEP = 1e-7  # of difference quotients; smaller slopes and excesses are rounding
 
 
 class Minimum(NamedTuple):
@@ -70,11 +67,6 @@ class Fit:
         return len(self.measured) - self.rank
 
     @property
-    def covariance(self) -> Array:
-        """Covariance of the coordinates, to first order."""
-        return self.sensitivity @ self.sensitivity.T
-
-    @property
     def probability(self) -> float:
         """Probability of a sum of squares as large or larger (chi-square)."""
         return chi_square_tail(self.squares, self.redundancy) if self.redundancy else 1.0
@@ -94,7 +86,7 @@ class Fit:
         excess: dict[str, float] = {}
         for name, margin in rows:
             amount = -float(np.nan_to_num(np.ravel(margin)[0], nan=-1.0))
-            if amount > INSIDE_TOL:
+            if amount > STEP:
                 excess[name] = max(amount, excess.get(name, 0.0))
         return excess
 
@@ -138,12 +130,9 @@ class Search:
     def slopes(self, point: Array) -> tuple[Array, Array]:
         """Return derivatives of both kinds of residuals at a point, by central differences."""
         ahead, behind = (
-            self._shifted(point[None], step * np.eye(len(point)))
-            for step in (DIFFERENCE_STEP, -DIFFERENCE_STEP)
+            self._shifted(point[None], step * np.eye(len(point))) for step in (STEP, -STEP)
         )
-        soft, hard = (
-            (a[0] - b[0]) / (2 * DIFFERENCE_STEP) for a, b in zip(ahead, behind, strict=True)
-        )
+        soft, hard = ((a[0] - b[0]) / (2 * STEP) for a, b in zip(ahead, behind, strict=True))
         return soft, hard
 
     def _shifted(self, points: Array, steps: Array) -> list[Array]:
@@ -169,7 +158,8 @@ class Search:
     def descend(self, points: Array) -> Array:
         """Return the ends of Levenberg-Marquardt iterations."""
         mixed = self.measured and (self.hard or self.limited)
-        for tolerance, iterations in STAGES if mixed else LAST_STAGE:
+        last = (STAGES[-1][0], sum(iterations for _, iterations in STAGES))
+        for tolerance, iterations in STAGES if mixed else (last,):
             damping = np.full(len(points), 1e-2)
             residual = self._weighted(points, tolerance)
             for _ in range(iterations):
@@ -188,9 +178,9 @@ class Search:
     ) -> Array:
         """Return a Levenberg-Marquardt step of each point, at most 2 typical sizes long."""
         d = points.shape[1]
-        soft, hard = self._shifted(points, DIFFERENCE_STEP * np.eye(d))
+        soft, hard = self._shifted(points, STEP * np.eye(d))
         slope = np.concatenate([soft, hard / tolerance], 1) - residual[:, :, None]
-        slope /= DIFFERENCE_STEP
+        slope /= STEP
         square = np.einsum("nij,nik->njk", slope, slope)
         gradient = np.einsum("nij,ni->nj", slope, residual)
         diagonal = np.einsum("njj->nj", square)
@@ -211,11 +201,11 @@ class Search:
         for _ in range(12):
             soft, hard = (table[0] for table in self.residuals(point[None]))
             by_soft, by_hard = self.slopes(point)
-            step = np.linalg.lstsq(by_hard, -hard, rcond=RANK_TOL)[0] if len(hard) else 0 * point
+            step = np.linalg.lstsq(by_hard, -hard, rcond=STEP)[0] if len(hard) else 0 * point
             basis = null_space(by_hard) if len(hard) else np.eye(len(point))
             if len(soft) and basis.size:
                 target = -(soft + by_soft @ step)
-                step = step + basis @ np.linalg.lstsq(by_soft @ basis, target, rcond=RANK_TOL)[0]
+                step = step + basis @ np.linalg.lstsq(by_soft @ basis, target, rcond=STEP)[0]
             size = float(np.abs(step).max(initial=0.0))
             point = point + step * min(1.0, 1.0 / max(size, 1e-300))
             if size < 1e-12:
@@ -234,7 +224,7 @@ class Search:
         by_hard = by_hard[: len(self.hard)]  # a limit at which it lies is not a known value
         basis = null_space(by_hard) if len(by_hard) else np.eye(len(point))
         u, s, vt = np.linalg.svd(by_soft @ basis)
-        rank = int((s > RANK_TOL * max(s.max(initial=0.0), 1e-300)).sum())
+        rank = int((s > STEP * max(s.max(initial=0.0), 1e-300)).sum())
         sensitivity = (basis @ vt[:rank].T / s[:rank]) @ u[:, :rank].T
         fit = Fit(
             problem=self.problem,
@@ -332,7 +322,7 @@ def expected_unseen(minima: int, ended: int) -> float:
 def null_space(matrix: Array) -> Array:
     """Return an orthonormal basis (columns) of what a matrix maps to 0."""
     _, s, vt = np.linalg.svd(matrix)
-    rank = int((s > RANK_TOL * max(s.max(initial=0.0), 1e-300)).sum())
+    rank = int((s > STEP * max(s.max(initial=0.0), 1e-300)).sum())
     return np.asarray(vt[rank:].T)
 
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from ..cases.amounts import Amount
 from ..mechanics.solve import evaluate
+from .fit import TYPED_TOL
 from .impacts import AFTER, BEFORE, COURSES, PIVOT, SPEEDS, VEHICLES, components
 
-TYPED_TOL = 1e-3  # a law missed by less, relative to its largest term, holds but for rounding
 SIGNIFICANT = 3.0  # standard deviations from which a law is named
 MOTION = (*BEFORE, *AFTER)
 FOLLOWING = (*"E MUP EM VC VS DVA DVB DVAF DVAR DVBF DVBR SA SB SAF SBF KI KF EL LOSS DT".split(),)
@@ -77,10 +77,10 @@ def missed_laws(known: Mapping[str, Amount], point: bool) -> tuple[MissedLaw, ..
             variances += np.square([sum(b.terms) - sum(a.terms) for a, b in pairs])
     missed = []
     for (law, like, terms), variance in zip(balances, variances.tolist(), strict=True):
-        amount, sd = abs(sum(terms)), float(np.sqrt(variance))
+        residual, sd = abs(sum(terms)), float(np.sqrt(variance))
         largest = max(map(abs, terms))
-        if amount > max(TYPED_TOL * largest, SIGNIFICANT * sd):
-            missed.append(MissedLaw(law, like, amount, sd, amount / largest))
+        if residual > max(TYPED_TOL * largest, SIGNIFICANT * sd):
+            missed.append(MissedLaw(law, like, residual, sd, residual / largest))
     return tuple(sorted(missed, key=lambda law: -law.relative))
 
 
@@ -100,8 +100,8 @@ def _balances(known: Mapping[str, float], point: bool) -> Iterator[_Balance]:
                 terms = (ma * va, -ma * ua, mb * vb, -mb * ub)
                 yield _Balance(f"momentum along {axis}", "PN", terms)
         if {"DVA", "DVB"} <= known.keys():
-            terms = (ma * known["DVA"], -mb * known["DVB"])
-            yield _Balance("momentum (MA DVA = MB DVB)", "PN", terms)
+            sizes = (ma * known["DVA"], -mb * known["DVB"])
+            yield _Balance("momentum (MA DVA = MB DVB)", "PN", sizes)
     state = {**vehicles, **motion, "M": 4.0 if point else 6.0}
     if not point and {*MOTION, *VEHICLES} <= state.keys():
         yield _angular_momentum(state)

@@ -19,7 +19,7 @@ from ..cases.amounts import Amount
 from ..cases.motion import OWN_AXES as OWN_AXES
 from ..cases.motion import line_of_motion
 from ..errors import UserError
-from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN
+from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE
 from ..mechanics.laws import Scale, margins
 from ..mechanics.solve import evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
@@ -41,14 +41,11 @@ MOTION = (VELOCITY, SPIN, ENERGY, IMPULSE, TURNING, PERCENT)
 ARMS = ("IA", "IB", "DA", "DB", "PA", "PB")
 ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
-ALONG_VEHICLE = ("DVAF", "DVAR", "DVBF", "DVBR", *FORCES)
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 """Ranges of coefficients that are not given (listing, lines 40 and 50)."""
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
 MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
-AT_REST = 1e-9  # speed of a vehicle without a course, over the largest known one
-TOUCH = 1e-9  # least closing speed and impulse of an impact, over typical ones
-ENERGY_ROUNDING = 1e-12
+TOUCH = 1e-9  # least speed, closing speed and impulse that count, over typical ones
 
 
 @dataclass(frozen=True)
@@ -385,7 +382,7 @@ class Problem:
             self._make_cartesian(values)
             impacts = Impacts(placed({"M": 4.0 if self.point else 6.0, **values}))
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
-                rest = impacts["S" + vehicle] < AT_REST * self.speed
+                rest = impacts["S" + vehicle] < TOUCH * self.speed
                 course = np.where(rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
                 impacts.values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
             impacts.compute(self.needed)
@@ -429,7 +426,7 @@ class Problem:
         if self.without_arms:
             return []
         inside = margins(impacts.values, self.scale)
-        energy = [("energy", inside["energy"][0] + ENERGY_ROUNDING)]
+        energy = [("energy", inside["energy"][0] + ENERGY_TOLERANCE)]
         if self.without_plane:
             return energy
         # the contact plane of points has no sides

@@ -19,10 +19,11 @@ from ..mechanics.solve import evaluate
 from ..names import check_names, missing
 from .impacts import AFTER, BEFORE, COEFFICIENTS, IMPULSES, PIVOT, VEHICLES, Array, Impacts
 
-RANK_TOL = 1e-10  # singular values below, relative to the largest, are 0
+RANK_TOL = 1e-10  # relative size of singular values, and of sliding, that is 0
 DETERMINED_TOL = 1e-7  # change of a quantity along open directions that is rounding
-SLIDING_TOL = 1e-12  # sliding, over the largest velocity, that has no direction
 STATE = (*BEFORE, *IMPULSES)
+MOTION = (*BEFORE, *AFTER, *IMPULSES)
+CONTACT = ("gn", "VS", "gt_after", "ia", "ib")
 UNKNOWNS = (*BEFORE, *AFTER, *COEFFICIENTS)
 
 
@@ -109,7 +110,7 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
         agrees = np.isfinite(mismatch)
         if "MU" in values:
             opposes = reading["MUP"] * sliding <= 0
-            ends = (np.abs(sliding) <= SLIDING_TOL) | (reading["MUP"] == PIVOT)
+            ends = (np.abs(sliding) <= RANK_TOL) | (reading["MUP"] == PIVOT)
             agrees &= ends | opposes
         reshaped = {name: x.reshape(shape) for name, x in found.items()}
         solutions.append(Solution(reshaped, mismatch.reshape(shape), agrees.reshape(shape)))
@@ -168,24 +169,13 @@ class _Rows:
 
     def __init__(self, basis: list[Impacts], known: Mapping[str, Array], mass: Array) -> None:
         self.known, self.mass = known, mass
-        names = (*BEFORE, *AFTER, *IMPULSES, "gn", "gt")
-        arms, _ = evaluate(basis[0].values, ("c", "s", "an", "at", "bn", "bt", "ia", "ib"))
-        c, s = arms["c"], arms["s"]
         count = len(mass)
-        self.columns: dict[str, Array] = {
-            name: np.stack([np.broadcast_to(b[name], count) for b in basis], 1) for name in names
+        state = {
+            name: np.stack([np.broadcast_to(b[name], count) for b in basis]) for name in MOTION
         }
-        x, y = self.columns["VAX"] - self.columns["VBX"], self.columns["VAY"] - self.columns["VBY"]
-        wa, wb = self.columns["WAF"], self.columns["WBF"]
-
-        def column(value: Any) -> Any:
-            return np.broadcast_to(value, count)[:, None]
-
-        c, s, an, at, bn, bt = (column(arms[n]) for n in ("c", "s", "an", "at", "bn", "bt"))
-        self.columns["Gn"] = c * x + s * y + an * wa + bn * wb
-        self.columns["Gt"] = c * y - s * x + at * wa + bt * wb
-        self.columns["turn"] = wa - wb
-        self.columns["by moment"] = self.columns["PM"] * column(arms["ia"] + arms["ib"])
+        bodies = {name: basis[0].values[name] for name in (*VEHICLES, "M")}
+        relative, _ = evaluate({**bodies, **state, "MU": 0.0}, CONTACT)
+        self.columns = {name: x.T for name, x in (*state.items(), *relative.items())}
 
     def of(self, name: str) -> Array:
         """Return a velocity, or a law with its known coefficient."""
@@ -203,8 +193,9 @@ class _Rows:
         """Return Equation 15, 16 or 18 with a coefficient."""
         columns, x = self.columns, value[:, None]
         if name == "E":
-            return np.asarray(columns["Gn"] + x * columns["gn"])
+            return np.asarray(columns["VS"] + x * columns["gn"])
         if name == "MUP":
-            sliding = columns["Gt"] * self.mass[:, None]
+            sliding = columns["gt_after"] * self.mass[:, None]
             return np.where(x == PIVOT, sliding, columns["PT"] - x * columns["PN"])
-        return np.asarray((1.0 - x) * columns["turn"] - x * columns["by moment"])
+        push = columns["PM"] * (columns["ia"] + columns["ib"])
+        return np.asarray((1.0 - x) * (columns["WAF"] - columns["WBF"]) - x * push)

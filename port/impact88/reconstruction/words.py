@@ -1,24 +1,21 @@
-"""Reconstructions in words: the sentences that reports print, and a page of its own.
+"""Reconstructions in words: the sentences that terminal, report and web page print.
 
-The first lines say what was asked, what was found, whether the evidence agrees, what was assumed,
-and what would help; ``full`` adds the rest.
+What was asked, whether the evidence agrees, why no impact does, what was assumed, what would help,
+and what was made of the problem.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from ..cases.units import PLAIN, View
-from ..layout import paragraph
 from ..mechanics.laws import LAWS
 from ..names import quantity
-from .answer import CONTRADICTION, Reconstruction, Test
+from .answer import CONTRADICTION, MAX_NAMED, Reconstruction, Test
 from .impacts import SPEEDS
 
-INDENT = 11  # columns of a label
 POOR = 0.05  # probability below which values agree poorly
-MAX_MOVES = 3  # values that would have to move, named
 ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
 """Results that advice names."""
 CONDITIONS = {
@@ -68,7 +65,7 @@ def _is_asked(result: Reconstruction, speed: str) -> bool:
 def evidence(result: Reconstruction, view: View = PLAIN) -> str:
     """Return whether the known values agree with each other."""
     found = result.evidence
-    laws = "; ".join(_law(law, view) for law in result.laws[:MAX_MOVES])
+    laws = "; ".join(_law(law, view) for law in result.laws[:MAX_NAMED])
     if not found.redundancy:
         text = "not checked: no more is known than needed"
         return f"{text}; {laws}" if laws else text
@@ -123,7 +120,7 @@ def _farthest(tests: Any) -> list[tuple[str, Test]]:
     """Return the values that an impact has farthest from where they were measured."""
     moved = [(n, t) for n, t in tests.items() if abs(t.adjusted - t.measured) >= t.sd]
     return sorted(moved, key=lambda pair: -abs(pair[1].adjusted - pair[1].measured) / pair[1].sd)[
-        :MAX_MOVES
+        :MAX_NAMED
     ]
 
 
@@ -175,118 +172,6 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
         meaning = f" ({quantity(reason).meaning})" if "," not in reason else ""
         lines.append(f"{_join(names)} {verb} {reason}{meaning}")
     return tuple(lines)
-
-
-def clock(degrees: float) -> str:
-    """Return a direction of force as on a clock, 12 ahead."""
-    return f"{round(degrees / 30) % 12 or 12} o'clock"
-
-
-# -- pages
-
-
-def text(results: Sequence[Reconstruction], view: View = PLAIN, full: bool = False) -> str:
-    """Return all impacts found as a page.
-
-    Parameters
-    ----------
-    results : sequence of Reconstruction
-        The impacts, as `reconstruct` returns them.
-    view : View, optional
-        Units, axes and headings of the numbers.
-    full : bool, default False
-        Every result with its interval, the checks, drivers and correlations.
-
-    Returns
-    -------
-    str
-        Lines of at most 96 columns.
-    """
-    pages = []
-    for k, result in enumerate(results, 1):
-        lines = [f"IMPACT {k} OF {len(results)}"] if len(results) > 1 else []
-        lines += _page(result, view)
-        lines += _rest(result, view) if full else []
-        pages.append("\n".join(lines))
-    return "\n\n".join(pages)
-
-
-def _page(result: Reconstruction, view: View) -> list[str]:
-    rows = [("ASKED", question(result))]
-    if result.verdict != "agrees":
-        rows.append(("VERDICT", refusal(result, view)))
-    for title, suffix in (("BEFORE", ""), ("AFTER", "F")):
-        for vehicle in "AB":
-            rows.append((f"{title} {vehicle}", _motion(result, vehicle, suffix, view)))
-    for vehicle in "AB":
-        size = _with_interval(result, f"DV{vehicle}", view)
-        force = result.values.get(f"PDOF{vehicle}")
-        from_ = (
-            f"; force from {clock(force)} ({number('PDOFA', force, view)})"
-            if force is not None
-            else ""
-        )
-        rows.append((f"DELTA-V {vehicle}", size + from_))
-    rows += [
-        ("FOUND", f"{name} {_with_interval(result, name, view)}")
-        for name in ("E", "MUP", "EM", "LOSS")
-        if name not in result.known and (name in result.values or name in result.intervals)
-    ]
-    rows.append(("EVIDENCE", evidence(result, view)))
-    rows += [("ASSUMED", "; ".join(assumptions(result)))] if result.assumed else []
-    rows += [("HELPS", sentence) for sentence in advice(result)]
-    rows += [("!", remark) for remark in remarks(result)]
-    return [line for title, words in rows if words for line in paragraph(words, title, INDENT)]
-
-
-def _motion(result: Reconstruction, vehicle: str, suffix: str, view: View) -> str:
-    speed, course = f"S{vehicle}{suffix}", f"H{vehicle}{suffix}"
-    if speed not in result.values and speed not in result.intervals:
-        return ""
-    words = _with_interval(result, speed, view)
-    if course in result.values:
-        words += f"; course {_with_interval(result, course, view)}"
-    return words
-
-
-def _with_interval(result: Reconstruction, name: str, view: View) -> str:
-    """Return a result with its 90 % interval, and the values found at most."""
-    interval, value = result.intervals.get(name), result.values.get(name)
-    if value is None:
-        if interval is None:
-            return "open"
-        low, high = view.shown_ends(name, *interval)
-        return f"not determined: 90 % {low:.4g} to {high:.4g} by what was assumed"
-    words = number(name, value, view)
-    if interval is None:
-        return words
-    low, high = view.shown_ends(name, *interval)
-    words += f", 90 % {low:.4g} to {high:.4g}"
-    if name in result.bounds:
-        low, high = view.shown_ends(name, *result.bounds[name])
-        words += f", found {low:.4g} to {high:.4g}"
-    return words
-
-
-def _rest(result: Reconstruction, view: View) -> list[str]:
-    """Return every result, the checks, drivers and correlations."""
-    lines = [""]
-    for name in result.deviations:
-        meaning = quantity(name).meaning
-        depends = drivers(result, name)
-        lines.append(f"{name:6} {_with_interval(result, name, view)}  {meaning}")
-        if depends:
-            lines.append(f"{'':6} through {depends}")
-    if result.undetermined:
-        lines += ["", *paragraph(", ".join(result.undetermined), "OPEN", INDENT)]
-    if result.tests:
-        lines += ["", "measured values beside the others"]
-        lines += [f"  {check(name, test, view)}" for name, test in result.tests.items()]
-    if result.correlations:
-        lines += ["", "correlations, to first order"]
-        pairs = sorted(result.correlations.items(), key=lambda pair: -abs(pair[1]))
-        lines += [f"  {a} {b} {x:+.2f}" for (a, b), x in pairs[:20]]
-    return lines
 
 
 def _join(names: Iterable[str]) -> str:
