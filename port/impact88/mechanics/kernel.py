@@ -5,15 +5,18 @@ functions over longer strips, to the same bits.
 """
 
 import ctypes
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import library
+from ..errors import UserError
 from ..names import PIVOT
 from . import consequences, formulas
 from .plan import COLUMNS, COMPILED, FORMULAS, NUMBERS, OTHERS, PIVOTS, ROWS, Plan
@@ -24,10 +27,13 @@ Floats = NDArray[np.float64]
 
 STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the second-level cache
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
+MAX_BLOCK = 1 << 25  # bytes; the C library maps larger arrays anew each time, page by page
 ARMS = ("arm_direction_a", "arm_direction_b", "lever_arm_a", "lever_arm_b", "contact_offsets")
 NOT_FINITE = 64.0
+SHARED = "out: a result shares memory with a column or another result"
 FINITE, ANY_SIZE, BITS, RAW = range(4)  # kinds of results in `machine.c`
 _ONE = np.float64(1.0)
+_address_of, _buffer_of = ctypes.addressof, ctypes.c_char.from_buffer
 FUNCTIONS: dict[str, Callable[..., tuple[Any, ...]]] = {
     name: getattr(formulas if name in COMPILED else consequences, name) for name in FORMULAS
 }
@@ -70,7 +76,8 @@ class Kernel:
         checked: bool,
         armless: bool = False,
     ) -> None:
-        self.inputs = plan.inputs
+        self.fixed = [name for name in plan.inputs if name not in varying]
+        self.changing = [name for name in plan.inputs if name in varying]
         self.wanted = wanted
         self._varying = varying
         self._checked = checked
@@ -94,7 +101,7 @@ class Kernel:
         # a formula would replace a known quantity in its row
         self._is_translated = given.isdisjoint(plan.inputs)
         first = len(COLUMNS)
-        pairs = [(ROWS[name], int(name in varying)) for name in plan.inputs]
+        pairs = [(ROWS[name], int(name in varying)) for name in (*self.fixed, *self.changing)]
         pairs += [(NUMBERS[name], guard) for name, guard in self._steps]
         pairs += [(ROWS[n] - first, kind) for n, kind in zip(wanted, self._kinds, strict=True)]
         fit = ROWS["fit"] - first if checked else 0
@@ -107,35 +114,64 @@ class Kernel:
         """Whether the compiled library computes it."""
         return _compiled is not None and self._is_translated and not library.is_switched_off()
 
-    def run(self, inputs: Sequence[Array], results: Sequence[Array], threads: int | None) -> None:
+    def new_results(self, shape: tuple[int, ...]) -> tuple[dict[str, Array], list[int]]:
+        """Return arrays for results, rows of as few as possible, and their addresses."""
+        size = 8 * math.prod(shape)
+        together = max(1, MAX_BLOCK // max(1, size))
+        numbers = [n for n, kind in zip(self.wanted, self._kinds, strict=True) if kind != BITS]
+        arrays: dict[str, Array] = {}
+        starts: list[int] = []
+        for begin in range(0, len(numbers), together):
+            group = numbers[begin : begin + together]
+            block = np.empty((len(group), *shape))
+            first = address(block)
+            for row, name in enumerate(group):
+                arrays[name] = block[row, ...]
+                starts.append(first + size * row)
+        if len(numbers) < len(self.wanted):
+            bits = np.empty(shape, np.uint16)
+            starts.insert(self.wanted.index("STATUS"), address(bits))
+            arrays["STATUS"] = bits
+            arrays = {name: arrays[name] for name in self.wanted}
+        return arrays, starts
+
+    def run(
+        self,
+        inputs: Mapping[str, Any],
+        results: Sequence[Array],
+        starts: Sequence[int],
+        threads: int | None,
+    ) -> None:
         """Compute results of inputs.
 
         Parameters
         ----------
-        inputs : sequence of ndarray
-            Contiguous float64 arrays in the order of the plan's inputs: of one length where they
-            vary, of length 1 elsewhere.
+        inputs : mapping of str to float or ndarray
+            The plan's inputs: numbers, and contiguous float64 arrays of one length where they vary.
         results : sequence of ndarray
-            Contiguous arrays of that length to write into.
+            Contiguous arrays of that size to write into.
+        starts : sequence of int
+            The addresses of the inputs that vary, in the order of `changing`, and of the results.
         threads : int or None
             The number of threads, None for as many as there are processors and work.
         """
         count = results[0].size
         if self.is_compiled:
-            places = np.array([address(array) for array in (*inputs, *results)], np.int64)
-            self.run_at(places, count, threads)
+            numbers = np.array([inputs[name] for name in self.fixed])
+            first = address(numbers)
+            self.run_at([*range(first, first + numbers.nbytes, 8), *starts], count, threads)
             return
+        flat = [array.reshape(-1) for array in results]
         for start in range(0, count, STRIP):
             part = slice(start, start + STRIP)
-            values = {
-                name: array[part] if name in self._varying else array[0]
-                for name, array in zip(self.inputs, inputs, strict=True)
-            }
-            self._run_strip(values, [array[part] for array in results])
+            values = {name: np.float64(inputs[name]) for name in self.fixed}
+            values.update({name: inputs[name][part] for name in self.changing})
+            self._run_strip(values, [array[part] for array in flat])
 
-    def run_at(self, places: NDArray[np.int64], count: int, threads: int | None) -> None:
-        """Compute ``count`` scenes by the library, given the addresses of inputs and results."""
-        assert _compiled is not None
+    def run_at(self, starts: Sequence[int], count: int, threads: int | None) -> None:
+        """Compute ``count`` scenes by the library, given the addresses of numbers, of arrays and of
+        results, in the order of `inputs`."""
+        places = np.array(starts, np.int64)
         run_in_threads(partial(_compiled.solve, self._address, address(places)), count, threads)
 
     @np.errstate(all="ignore")
@@ -163,16 +199,23 @@ class Kernel:
 
 def address(array: Any) -> int:
     """Return the address of an array's first element."""
+    return addresses([array])[0]
+
+
+def addresses(arrays: Sequence[Any]) -> list[int]:
+    """Return the addresses of arrays' first elements."""
     try:  # four times as fast as the array's interface
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
-    except (TypeError, ValueError):  # read-only or empty
-        return int(array.__array_interface__["data"][0])
+        return [_address_of(_buffer_of(array)) for array in arrays]
+    except (TypeError, ValueError):  # one is read-only or empty
+        return [array.__array_interface__["data"][0] for array in arrays]
 
 
 def run_in_threads(work: Callable[[int, int], object], count: int, threads: int | None) -> None:
     """Call ``work(begin, end)`` for parts of ``count`` scenes, `SCENES_PER_THREAD` at least on each
     thread."""
-    parts = min(threads or os.cpu_count() or 1, count // SCENES_PER_THREAD)
+    parts = count // SCENES_PER_THREAD
+    if parts > 1:
+        parts = min(parts, threads or os.cpu_count() or 1)
     if parts < 2:
         work(0, count)
         return
@@ -184,21 +227,22 @@ def run_in_threads(work: Callable[[int, int], object], count: int, threads: int 
 
 
 def check_output(
-    results: Mapping[str, Array], shape: tuple[int, ...], inputs: Sequence[Array]
-) -> str:
-    """Return why arrays cannot take the results of scenes of a shape, "" where they can."""
+    results: Mapping[str, Array], shape: tuple[int, ...], inputs: Sequence[int]
+) -> list[int]:
+    """Return the addresses of arrays to write results of scenes of a shape into. Raises UserError
+    for arrays that cannot take them; ``inputs``: the addresses of the columns."""
     for name, array in results.items():
         kind = np.uint16 if name == "STATUS" else np.float64
         if not (isinstance(array, np.ndarray) and array.shape == shape and array.dtype == kind):
-            return f"out, {name}: expected an array of {kind.__name__} of shape {shape}"
+            raise UserError(f"out, {name}: expected an array of {kind.__name__} of shape {shape}")
         if not array.flags.carray:
-            return f"out, {name}: expected a contiguous array that can be written to"
-    ranges = [(address(array), array.nbytes, False) for array in inputs if array.size > 1]
-    ranges += [(address(array), array.nbytes, True) for array in results.values()]
-    end = end_of_result = 0
-    for start, size, is_result in sorted(ranges):
-        if start < end_of_result or (is_result and start < end):
-            return "out: a result shares memory with a column or another result"
-        end = max(end, start + size)
-        end_of_result = max(end_of_result, start + size) if is_result else end_of_result
-    return ""
+            raise UserError(f"out, {name}: expected a contiguous array that can be written to")
+    starts = addresses(list(results.values()))
+    size, own = 8 * math.prod(shape), set(starts)
+    if len(own) < len(starts) or not own.isdisjoint(inputs):
+        raise UserError(SHARED)
+    for first, second in pairwise(sorted([*starts, *inputs])):
+        # columns may overlap each other
+        if second - first < size and (first in own or second in own):
+            raise UserError(SHARED)
+    return starts

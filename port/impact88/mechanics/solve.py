@@ -11,21 +11,19 @@ from numpy.typing import ArrayLike, NDArray
 from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
-from .kernel import FUNCTIONS, Kernel, address, check_output
+from .kernel import FUNCTIONS, Kernel, address, addresses, check_output
 from .plan import COMPILED, FORMULAS, QUANTITIES, Plan, plan
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 
+BODIES = 6.0  # M of bodies
 POINT = 4.0  # M of point masses
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """Columns that a point mass does not use."""
 _ALL = tuple(RESULTS)
 _NAMES = frozenset(QUANTITIES)
-_BODIES = np.array(6.0)
-_ZERO = np.array(0.0)
-_ONE = np.array(1.0)
-_UNUSED = dict.fromkeys(("MA", "MB", "IA", "IB"), _ONE)
+_UNUSED = dict.fromkeys(("MA", "MB", "IA", "IB"), 1.0)
 """Usable numbers, besides 0, for columns that no wanted result needs."""
 
 
@@ -99,17 +97,15 @@ def solve(
         results = _ALL if out is None else tuple(out)
     wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
     given = _read_columns(columns, needed)
-    shape = _common_shape(given)
-    varying = frozenset([name for name, array in given.items() if array.size != 1])
-    kernel = _kernel(wanted, varying, _is_armless(given, varying))
-    inputs = [_flatten(given[name], shape) for name in kernel.inputs]
+    shape, inputs, varying = _flatten(given)
+    kernel = _kernel(wanted, varying, _is_armless(inputs))
+    places = addresses([inputs[name] for name in kernel.changing])
     if out is None:
-        arrays = _new_arrays(wanted, shape)
+        arrays, starts = kernel.new_results(shape)
     else:
         arrays = {name: out[name] for name in wanted}
-        if problem := check_output(arrays, shape, inputs):
-            raise UserError(problem)
-    kernel.run(inputs, [array.reshape(-1) for array in arrays.values()], threads)
+        starts = check_output(arrays, shape, places)
+    kernel.run(inputs, [*arrays.values()], [*places, *starts], threads)
     if shape == () and out is None:
         return {name: array[()] for name, array in arrays.items()}
     return arrays
@@ -164,15 +160,14 @@ def evaluate(
     names = tuple(split_names(wanted)) if isinstance(wanted, str) else tuple(wanted)
     given = {name: _as_doubles(name, value) for name, value in known.items() if name in _NAMES}
     _complete(given)
-    shape = _common_shape(given)
-    varying = frozenset([name for name, array in given.items() if array.size != 1])
+    shape, inputs, varying = _flatten(given)
     lacking, kernel, following = _evaluation(names, frozenset(given), varying)
-    values: dict[str, Any] = dict(given)
+    values: dict[str, Any] = {n: np.float64(x) if type(x) is float else x for n, x in given.items()}
     if kernel is not None:
-        inputs = [_flatten(given[name], shape) for name in kernel.inputs]
-        block = np.empty((len(kernel.wanted), *shape))
-        kernel.run(inputs, list(block.reshape(len(block), -1)), 1)
-        values.update(zip(kernel.wanted, block, strict=True))
+        arrays, starts = kernel.new_results(shape)
+        places = addresses([inputs[name] for name in kernel.changing])
+        kernel.run(inputs, [*arrays.values()], [*places, *starts], 1)
+        values.update(arrays)
     with np.errstate(all="ignore"):
         for name in following:
             formula = FORMULAS[name]
@@ -263,22 +258,20 @@ class Prepared:
         self.results, needed = _needed_columns(results)
         stays = {name: value for name, value in needed.items() if name not in names}
         self._scene = {}
-        for name, array in _read_columns(scene, stays).items():
-            if array.size != 1:
-                raise UserError(f"{name} has {array.size} numbers; expected one number that stays")
-            self._scene[name] = float(array.reshape(()))
+        for name, value in _read_columns(scene, stays).items():
+            if np.size(value) != 1:
+                raise UserError(f"{name} has {np.size(value)} numbers; expected one that stays")
+            self._scene[name] = float(np.reshape(value, ()))
         self._prepare()
 
     def _prepare(self) -> None:
         """Plan the computation, and find the addresses of what stays."""
         used = frozenset(self.names) & _needed_columns(self.results)[1].keys()
         self._kernel = Kernel(plan((*self.results, "fit")), self.results, used, True)
-        inputs = self._kernel.inputs
-        self._fixed = np.array([self._scene.get(name, 0.0) for name in inputs])
+        self._rows = [self.names.index(name) for name in self._kernel.changing]
+        self._fixed = np.array([self._scene[name] for name in self._kernel.fixed])
         start = address(self._fixed)
-        # of each input the row of a call, or where its number is
-        self._rows = [self.names.index(name) if name in used else -1 for name in inputs]
-        self._starts = [start + 8 * k for k in range(len(inputs))]
+        self._starts = list(range(start, start + self._fixed.nbytes, 8))
 
     def __call__(self, values: ArrayLike) -> dict[str, Any]:
         """Return the results of scenes.
@@ -302,17 +295,13 @@ class Prepared:
         shape = block.shape[1:]
         count = math.prod(shape)
         if self._kernel.is_compiled:
-            arrays = _new_arrays(self.results, shape)
-            first, row = address(block), 8 * count
-            starts = [
-                start if k < 0 else first + row * k
-                for start, k in zip(self._starts, self._rows, strict=True)
-            ]
-            places = np.array([*starts, *map(address, arrays.values())], np.int64)
-            self._kernel.run_at(places, count, 1)
+            arrays, starts = self._kernel.new_results(shape)
+            first, size = address(block), 8 * count
+            rows = [first + size * row for row in self._rows]
+            self._kernel.run_at([*self._starts, *rows, *starts], count, 1)
         else:
-            rows = dict(zip(self.names, block, strict=True))
-            arrays = solve({**self._scene, **rows}, self.results)
+            columns = dict(zip(self.names, block, strict=True))
+            arrays = solve({**self._scene, **columns}, self.results)
         return {name: array[()] for name, array in arrays.items()} if shape == () else arrays
 
     def _block(self, values: Any) -> Floats:
@@ -321,7 +310,7 @@ class Prepared:
             block = np.ascontiguousarray(values, np.float64)
         except (TypeError, ValueError):  # numbers and arrays mixed, texts, or neither
             rows = values if isinstance(values, list | tuple) else []
-            arrays = [_as_doubles(n, x) for n, x in zip(self.names, rows, strict=False)]
+            arrays = [np.array(_as_doubles(*x)) for x in zip(self.names, rows, strict=False)]
             _common_shape(dict(zip(self.names, arrays, strict=False)))
             block = np.array(np.broadcast_arrays(*arrays))
         if len(block) != len(self.names):
@@ -374,7 +363,7 @@ def _evaluation(
 @lru_cache(maxsize=512)
 def _needed_columns(
     results: str | tuple[str, ...],
-) -> tuple[tuple[str, ...], Mapping[str, Floats | None]]:
+) -> tuple[tuple[str, ...], Mapping[str, float | None]]:
     """Return result names, each once, and the columns that are read, each with the value to take
     where it is not given, None for one that the results need. Raises UserError."""
     names = tuple(split_names(results))
@@ -384,12 +373,12 @@ def _needed_columns(
     wanted = tuple(dict.fromkeys(names))
     needed = plan(wanted).inputs
     return wanted, {
-        name: None if name in needed else _UNUSED.get(name, _ZERO)
+        name: None if name in needed else _UNUSED.get(name, 0.0)
         for name in plan((*wanted, "fit")).inputs
     }
 
 
-def _read_columns(columns: Any, needed: Mapping[str, Floats | None]) -> dict[str, Floats]:
+def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str, float | Floats]:
     """Return the needed columns of a mapping or frame as doubles. Raises UserError."""
     names = columns if isinstance(columns, Mapping) else _frame_names(columns)
     given = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
@@ -403,11 +392,11 @@ def _read_columns(columns: Any, needed: Mapping[str, Floats | None]) -> dict[str
     return given
 
 
-def _complete(given: dict[str, Floats]) -> None:
+def _complete(given: dict[str, Any]) -> None:
     """Add M where it is not given, and 0 for what point masses do not use."""
-    m = given.setdefault("M", _BODIES)
-    if m.size and (m == POINT).all():
-        given.update(dict.fromkeys(UNUSED_BY_POINTS, _ZERO))
+    m = given.setdefault("M", BODIES)
+    if m is not BODIES and (m == POINT if type(m) is float else m.size and (m == POINT).all()):
+        given.update(dict.fromkeys(UNUSED_BY_POINTS, 0.0))
 
 
 def _frame_names(frame: Any) -> frozenset[object]:
@@ -421,10 +410,13 @@ def _frame_names(frame: Any) -> frozenset[object]:
     return frozenset(names)
 
 
-def _as_doubles(name: str, value: Any) -> Floats:
+def _as_doubles(name: str, value: Any) -> float | Floats:
     """Return a column's numbers. Raises UserError for what is no number."""
-    if type(value) is np.ndarray and value.dtype == np.float64:
-        return value
+    kind = type(value)
+    if kind is float or (kind is np.ndarray and value.dtype == np.float64):
+        return value  # type: ignore[no-any-return]
+    if kind is int or kind is np.float64:
+        return float(value)
     if isinstance(value, np.ma.MaskedArray):
         masked: Any = value.astype(np.float64)
         value = masked.filled(np.nan)
@@ -455,38 +447,39 @@ def _number(name: str, at: int, cell: Any) -> float:
     raise UserError(f"{name} = {quoted(cell)} at position {at} is no number; expected a number")
 
 
-def _common_shape(given: Mapping[str, Array]) -> tuple[int, ...]:
-    """Return the shape that columns broadcast to. Raises UserError where they do not."""
-    shapes = {array.shape for array in given.values()}
-    if len(shapes) == 1:
-        return shapes.pop()
-    shapes.discard(())
+def _flatten(
+    given: Mapping[str, Any],
+) -> tuple[tuple[int, ...], dict[str, Any], frozenset[str]]:
+    """Return the shape that columns broadcast to, the columns flat, those of one number as a
+    number, and the names of the others. Raises UserError where they do not broadcast."""
+    arrays = {name: x for name, x in given.items() if type(x) is not float}
+    shape = _common_shape(arrays)
+    flat: dict[str, Any] = dict(given)
+    varying = []
+    for name, array in arrays.items():
+        if array.size == 1:
+            flat[name] = float(array.reshape(()))
+            continue
+        varying.append(name)
+        if array.ndim != 1 or array.shape != shape or not array.flags.c_contiguous:
+            flat[name] = np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+    return shape, flat, frozenset(varying)
+
+
+def _common_shape(arrays: Mapping[str, Any]) -> tuple[int, ...]:
+    """Return the shape that arrays broadcast to. Raises UserError where they do not."""
+    shapes: set[tuple[int, ...]] = {array.shape for array in arrays.values()}
     if len(shapes) == 1:
         return shapes.pop()
     try:
         return np.broadcast_shapes(*shapes)
     except ValueError:
-        sizes = ", ".join(f"{n} {x.shape}" for n, x in given.items() if x.shape)
+        sizes = ", ".join(f"{n} {x.shape}" for n, x in arrays.items() if x.shape)
         raise UserError(f"columns do not broadcast together: {sizes}") from None
 
 
-def _is_armless(given: Mapping[str, Floats], varying: frozenset[str]) -> bool:
-    """Return whether DA and DB are the number 0."""
-    for name in ("DA", "DB"):
-        if name in varying or (name in given and given[name].flat[0] != 0.0):
-            return False
-    return True
-
-
-def _flatten(array: Array, shape: tuple[int, ...]) -> Array:
-    """Return a column contiguous and flat, of length 1 where it is one number."""
-    if array.ndim == 1 and array.shape == shape and array.flags.c_contiguous:
-        return array
-    if array.size != 1 and array.shape != shape:
-        array = np.broadcast_to(array, shape)
-    return np.ascontiguousarray(array).reshape(-1)
-
-
-def _new_arrays(names: tuple[str, ...], shape: tuple[int, ...]) -> dict[str, Array]:
-    """Return empty arrays for results."""
-    return {name: np.empty(shape, np.uint16 if name == "STATUS" else float) for name in names}
+def _is_armless(inputs: Mapping[str, Any]) -> bool:
+    """Return whether DA and DB are the number 0, where they count."""
+    return all(
+        type(x) is float and x == 0.0 for x in (inputs.get("DA", 0.0), inputs.get("DB", 0.0))
+    )
