@@ -30,6 +30,6 @@ def main(args: options.Args) -> int:
 
     if not args.target.lower().endswith(ENDINGS):
         raise UserError(f"expected a name that ends in {', '.join(ENDINGS)}", f"-o {args.target}")
-    answer = ask(options.case_of(args), full=True, seed=args.seed)
+    answer = ask(options.case_of(args), seed=args.seed)
     write(answer, args.target)
     return int(not answer.possible)
