@@ -22,7 +22,7 @@ from ..cases import Case
 from ..errors import UserError, library, printable
 from ..names import LENGTH, MASS, missing
 from .answers import Answer
-from .labels import Label, leader, path_of, place, sampled, text_element
+from .labels import Label, leader, path_of, place, points_along, text_element
 from .rounding import decimals_of, rounded
 
 COLOURS = {"A": "#0068a3", "B": "#bd4f00", "P": "#99356f"}
@@ -263,8 +263,8 @@ def _bodies(values: Mapping[str, float], case: Case) -> list[Body]:
         angle = values.get(f"T{name}", 0.0) + values.get(f"P{name}", 0.0)
         center = side * values.get(f"D{name}", 0.0) * _unit(angle)
         if kind != "vehicle" or _is_armless(values):  # they touch at the contact plane
-            turned = front / inward
-            depth = abs(turned.real) * length + abs(turned.imag) * width
+            direction = front / inward
+            depth = abs(direction.real) * length + abs(direction.imag) * width
             center = inward * (length if kind == "disc" else depth) / 2
         faces = theta is not None and f"T{name}" not in case.omitted and kind != "barrier"
         plan = center, front, length, width, origin
@@ -335,9 +335,9 @@ class _Sheet:
         """Return the text of a base value: the answer's own, or rounded alike."""
         if name in self.answer.found:
             return self.answer.found[name].text
-        shown = self.view.shown(name, value)
+        number = self.view.shown(name, value)
         is_speed = name[0] in "SD"
-        return rounded(shown, self.speed_decimals if is_speed else decimals_of([shown]))
+        return rounded(number, self.speed_decimals if is_speed else decimals_of([number]))
 
     def line(
         self,
@@ -354,7 +354,7 @@ class _Sheet:
         look += f' stroke-dasharray="{dash}"' if dash else ""
         self.parts.append(f'<path d="{path_of(points)}{"Z" * is_outline}" {look}/>')
         closed = [*points, points[0]] if is_outline else points
-        self.ink.append(sampled(closed, OUTLINE_STEP) if is_outline else sampled(closed))
+        self.ink.append(points_along(closed, OUTLINE_STEP) if is_outline else points_along(closed))
 
     def head(self, tip: complex, direction: complex, colour: str, size: float) -> None:
         """Draw the head of an arrow."""
@@ -380,8 +380,8 @@ class _Sheet:
         size = min(4.0 + 2.2 * width, 0.6 * abs(run))
         for step in (0, 1, -1, 2, -2, 3, -3):
             aside = step * SIDESTEP * 1j * run / abs(run)
-            points = sampled([start + aside, end + aside])
-            if not any(_covers(points, other) for other in self.arrows):
+            points = points_along([start + aside, end + aside])
+            if not any(_covers(points, arrow) for arrow in self.arrows):
                 break
         self.arrows.append(points)
         start, end = start + aside, end + aside
@@ -429,9 +429,9 @@ class _Sheet:
             ends = self.arrow(self.at(tail), self.at(tip), colour, width, dash)
             if ends:
                 size = self.text(name.format(body.name), abs(tip - tail) / self.per_speed)
-                at, other = ends if kind == "before" else ends[::-1]
+                at, origin = ends if kind == "before" else ends[::-1]
                 text = f"{symbol}_{body.name.lower()} {size}"
-                self.labels.append(Label(at, at - other, text, colour))
+                self.labels.append(Label(at, at - origin, text, colour))
         self.ring(self.at(body.center), 3.0, colour)
 
     def draw_spins(self, body: Body) -> None:
@@ -463,11 +463,11 @@ class _Sheet:
     def write_labels(self) -> None:
         """Place the labels and write them."""
         order = sorted(self.labels, key=lambda label: label.size, reverse=True)
-        placed = place(order, np.concatenate(self.ink), WIDTH, self.height)
-        for label, box in placed:
+        places = place(order, np.concatenate(self.ink), WIDTH, self.height)
+        for label, box in places:
             if ends := leader(label, box):
                 self.line(ends, label.colour, 0.6)
-        for label, box in placed:
+        for label, box in places:
             base = box.center + 0.36j * label.size
             self.parts.append(text_element(base, label.text, label.colour, label.size, label.bold))
 
@@ -519,7 +519,9 @@ class _Sheet:
     def _notes(self) -> str:
         """Return the notes of the legend."""
         view, sense = self.view, "clockwise" if self.is_sae else "counterclockwise"
-        words = [f"Spins in {view.unit('WA') or 'radians per time'}, positive {sense}."]
+        words = []
+        if any(body.kind == "vehicle" for body in self.bodies):
+            words.append(f"Spins in {view.unit('WA') or 'radians per time'}, positive {sense}.")
         words += ["North is up."] if view.headings else []
         if self.impulse and self.bodies[1].faces:
             words.append(f"B is struck from {self.bodies[1].hour(-self.impulse)}.")
@@ -527,7 +529,7 @@ class _Sheet:
         for body in self.bodies:
             length, width = (f"{view.shown('DA', x):.3g}" for x in (body.length, body.width))
             size = f"{body.origin}, {length} by {width} {view.unit('DA')}".rstrip()
-            look = {"disc": "as point mass", "barrier": "as a barrier"}.get(body.kind, size)
+            look = {"disc": "as disc (point mass)", "barrier": "as a barrier"}.get(body.kind, size)
             looks.setdefault(look, []).append(body.name)
         words += [f"{' and '.join(names)} drawn {look}." for look, names in looks.items()]
         if self.values.get("M") == 4 or _is_armless(self.values):
@@ -535,8 +537,8 @@ class _Sheet:
         return " ".join(words)
 
 
-def _covers(points: np.ndarray, other: np.ndarray) -> bool:
+def _covers(first: np.ndarray, second: np.ndarray) -> bool:
     """Return True if a third of the shorter of two lines lies along the other."""
-    distances = np.abs(points[:, None] - other)
-    near = min(len(points), len(other)) / 3
-    return bool((distances.min(axis=1) < SIDESTEP / 2).sum() > near)
+    distances = np.abs(first[:, None] - second)
+    limit = min(len(first), len(second)) / 3
+    return bool((distances.min(axis=1) < SIDESTEP / 2).sum() > limit)

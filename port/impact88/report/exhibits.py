@@ -180,10 +180,10 @@ def _examine_picture(name: str, data: bytes) -> list[Exhibit]:
     """Verify every printout of a picture, by release 0.3's reader."""
     from ..printouts.reporting.examination import examine as examine_file
 
-    examined = examine_file(name, data=data)
-    if examined.error:
-        raise UserError(examined.error)
-    return [_of_old(result, name) for result in examined.results]
+    examination = examine_file(name, data=data)
+    if examination.error:
+        raise UserError(examination.error)
+    return [_of_old(result, name) for result in examination.results]
 
 
 def _of_old(result: Any, name: str) -> Exhibit:

@@ -73,7 +73,7 @@ def path_of(points: Iterable[complex]) -> str:
     return "M" + "L".join(f"{p.real:.1f} {p.imag:.1f}" for p in points)
 
 
-def sampled(points: Sequence[complex], step: float = INK_STEP) -> Points:
+def points_along(points: Sequence[complex], step: float = INK_STEP) -> Points:
     """Return points along a line, at most a step apart."""
     pieces = [
         np.linspace(start, end, int(abs(end - start) / step) + 2) for start, end in pairwise(points)
@@ -95,11 +95,11 @@ def place(
     width, height : float
         Size of the paper, in px.
     """
-    placed: list[tuple[Label, Box]] = []
+    places: list[tuple[Label, Box]] = []
     for label in labels:
-        boxes = [box for _, box in placed]
-        placed.append((label, _best_place(label, boxes, ink, width, height)))
-    return placed
+        boxes = [box for _, box in places]
+        places.append((label, _best_place(label, boxes, ink, width, height)))
+    return places
 
 
 def _best_place(

@@ -152,12 +152,12 @@ def _fields(texts: Mapping[str, str], kind: str = DEFAULT_KIND) -> dict[str, Any
     """Return what the fields of a kind show; entries without a field follow as text."""
     kind = kind if kind in KINDS else DEFAULT_KIND
     names = KINDS[kind].entries
-    more = [f"{n} = {x}" for n, x in texts.items() if n not in (*names, *HEADINGS, *VIEW)]
+    lines = [f"{n} = {x}" for n, x in texts.items() if n not in (*names, *HEADINGS, *VIEW)]
     return {
         "kind": kind,
         "names": names,
         "values": names | dict(texts),
-        "more": "\n".join(more),
+        "more": "\n".join(lines),
         "view": View.of(**{name: texts.get(name) for name in VIEW}),
     }
 
