@@ -72,6 +72,8 @@ def test_the_law_that_misses_is_named_with_its_amount():
     assert {law.law for law in result.laws} == {"momentum along x"}
     assert "VBX" in result.evidence.at_odds
     assert "The nearest one has" in refusal(result)
+    assert not result.intervals
+    assert " sd)" not in evidence(result) + refusal(result)
 
 
 def test_values_that_agree_but_for_the_rounding_of_what_was_typed():

@@ -68,7 +68,7 @@ def test_units_of_the_view():
     metric = {"SA": "20 +- 1 km/h", "DVA": "11 +- .5 km/h", "DVB": "12 +- .5 km/h"}
     case = Case.of({**RECORDER, "MA": "950 kg", "MB": "770 kg", **metric}, view=View("metric"))
     result = reconstruct(case.entries)[0]
-    assert "DVA 11 km/h measured, " in check("DVA", result.tests["DVA"], case.view)
+    assert "DVA 11 km/h given, " in check(result, "DVA", case.view)
 
 
 def test_a_scene_for_the_1988_program():

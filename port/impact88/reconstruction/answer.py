@@ -37,6 +37,7 @@ INTERVAL = (0.05, 0.95)
 STEP = 1e-6  # of difference quotients, in typical sizes; a smaller change is rounding
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
+ADVERSE = ("impossible", "contradictory")
 BOUNDED = ("SA", "SB", "DVA", "DVB")
 CORRELATED = ("UX", "UY", "VX", "VY", "SA", "SB", "DVA", "DVB", "PDOFA", "PDOFB", "E", "MUP", "EM")
 KNOWABLE = (
@@ -194,7 +195,7 @@ class Reconstruction:
     @property
     def is_adverse(self) -> bool:
         """True if no impact that physics allows agrees with what is known."""
-        return self.verdict in ("impossible", "contradictory")
+        return self.verdict in ADVERSE
 
     def scene(self) -> dict[str, float]:
         """Return the impact as a scene for the 1988 program.
@@ -455,6 +456,7 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
             values[name] = times * values["P"] / contact_time
             slopes[name] = times * slopes["P"] / contact_time
     deviations = {name: float(np.sqrt(np.square(s).sum())) for name, s in slopes.items()}
+    is_adverse = verdict in ADVERSE  # its numbers settle nothing
     reach = NormalDist().inv_cdf(INTERVAL[1])
     remarks = [*problem.remarks]
     for name in driving_backwards(fit):
@@ -464,7 +466,9 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         )
     return Reconstruction(
         values=values | _inputs(near),
-        intervals={
+        intervals={}
+        if is_adverse
+        else {
             name: (values[name] - reach * sd, values[name] + reach * sd)
             for name, sd in deviations.items()
             if sd > TIE * abs(values[name])
@@ -475,7 +479,9 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         deviations=deviations,
         evidence=_evidence(near),
         broken=_broken(fit, verdict),
-        drivers={name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()},
+        drivers={}
+        if is_adverse
+        else {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()},
         correlations=_correlations(slopes),
         undetermined=tuple(undetermined),
         advice=_advice(near, undetermined),

@@ -76,7 +76,7 @@ def evidence(result: Reconstruction, view: View = PLAIN) -> str:
         f"the values {agree}: sum of squared adjustments {found.squares:.3g} where about "
         f"{found.redundancy} is expected, probability {found.probability:.2g}"
     )
-    odd = "; ".join(check(name, result.tests[name], view) for name in found.at_odds)
+    odd = "; ".join(check(result, name, view) for name in found.at_odds)
     if odd and found.probability < POOR:
         text += f". Most at odds: {odd}"
     return f"{text}. {laws[:1].upper()}{laws[1:]}" if laws else text
@@ -88,10 +88,19 @@ def _law(law: Any, view: View) -> str:
     return f"{law.law} misses by {amount} ({100 * law.relative:.2g} % of its largest term)"
 
 
-def check(name: str, test: Test, view: View = PLAIN) -> str:
-    """Return a measured value beside the others."""
-    measured, others = (number(name, x, view) for x in (test.measured, test.by_others))
-    return f"{name} {measured} measured, {others} by the others ({test.move:.1f} sd)"
+def check(result: Reconstruction, name: str, view: View = PLAIN) -> str:
+    """Return a known value beside the others."""
+    test = result.tests[name]
+    given, others = (number(name, x, view) for x in (test.measured, test.by_others))
+    return f"{name} {given} given, {others} by the others{_moved(result, name, test.by_others)}"
+
+
+def _moved(result: Reconstruction, name: str, value: float) -> str:
+    """Return how far a value is from the given one in its standard deviations, "" if exact."""
+    test = result.tests[name]
+    if name not in result.known or not result.known[name].varies:
+        return ""
+    return f" ({abs(value - test.measured) / test.sd:.1f} sd)"
 
 
 def refusal(result: Reconstruction, view: View = PLAIN) -> str:
@@ -107,8 +116,8 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     if conditions:
         text += f": {'; '.join(conditions)}"
     moves = [
-        f"{name} at {number(name, test.adjusted, view)}, not {number(name, test.measured, view)} "
-        f"({abs(test.adjusted - test.measured) / test.sd:.1f} sd)"
+        f"{name} at {number(name, test.adjusted, view)}, not {number(name, test.measured, view)}"
+        f"{_moved(result, name, test.adjusted)}"
         for name, test in _farthest(result.tests)
     ]
     if result.verdict == "contradictory" and moves:
