@@ -17,7 +17,7 @@ import pytest
 from drawnscenes import SIDE, case_of
 
 import impact88
-from impact88.cases import Case
+from impact88.cases import Case, template
 from impact88.report.answers import ask
 
 pytest.importorskip("flask")
@@ -184,6 +184,14 @@ def test_a_file_is_opened_and_saved(client: Client) -> None:
     saved = client.post("scene", **form | {"units": "metric", "more": unescape(more)})
     assert "attachment" in saved.headers["Content-Disposition"]
     assert Case.loads(saved.text).written == {"M": "6"} | case.written
+
+
+@pytest.mark.parametrize("kind", ["intersection", "rear-end", "head-on", "planar"])
+def test_a_template_is_opened_as_its_kind(client: Client, kind: str) -> None:
+    file = (io.BytesIO(template(kind, "metric").encode()), "crash.toml")
+    assert (
+        f'<input type="hidden" name="was" value="{kind}">' in client.post("fields", file=file).text
+    )
 
 
 def test_another_kind_keeps_what_was_typed(client: Client) -> None:

@@ -181,10 +181,7 @@ def fields() -> str:
         source, data = upload
         texts, _ = read_toml(decode(data, source), source)
         Case.of(texts, source)
-        # the kind that takes the most entries, and has the fewest others
-        kind = max(
-            KINDS, key=lambda k: (len({*texts} & {*KINDS[k].entries}), -len(KINDS[k].entries))
-        )
+        kind = max(KINDS, key=lambda name: _likeness(texts, KINDS[name].entries))
     else:
         former = KINDS.get(request.form.get("was", ""), KINDS[DEFAULT_KIND]).entries
         texts = {n: text for n, text in _texts().items() if text != former.get(n)}
@@ -193,6 +190,12 @@ def fields() -> str:
     if "HX-Request" in request.headers:
         return render_template("fields.html", **context)
     return render_template("collision.html", page="collision", **context)
+
+
+def _likeness(texts: Mapping[str, str], entries: Mapping[str, str]) -> tuple[int, int, int]:
+    """Return what a file has in common with a kind: names, whole entries, and no others."""
+    common = {*texts} & {*entries}
+    return len(common), len({*texts.items()} & {*entries.items()}), -len(entries)
 
 
 def _case() -> Case:
