@@ -16,7 +16,7 @@ COMPILER = os.environ.get("CC", "gcc")
 # as pyproject.toml has them, for one instruction set, less optimized
 FLAGS = "-shared -fPIC -O1 -g1 -ffp-contract=off -fno-math-errno -fno-trapping-math".split()
 SANITIZERS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"]
-TESTS = ["tests/mechanics/test_native.py"]
+TESTS = ["tests/mechanics/test_impact.py"]
 SECONDS = 300
 
 
@@ -37,12 +37,13 @@ def main() -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         copy = shutil.copytree(PACKAGE, folder / "impact88")
-        for built in copy.glob("mechanics/native/_machine*"):
+        for built in copy.glob("_compiled*"):
             built.unlink()
-        library = copy / "mechanics" / "native" / "_machine.so"
-        source = str(copy / "mechanics" / "native" / "machine.c")
-        subprocess.run([COMPILER, *FLAGS, *SANITIZERS, "-o", library, source, "-lm"], check=True)
-        probe = "from impact88.mechanics import native; print(native.__file__, native.accelerated)"
+        library = copy / "_compiled.so"
+        sources = [str(copy / "mechanics" / "machine.c"), str(copy / "program" / "applesoft.c")]
+        command = [COMPILER, *FLAGS, *SANITIZERS, "-o", library, *sources, "-lm"]
+        subprocess.run(command, check=True)
+        probe = "from impact88 import library; print(library.__file__, library.accelerated)"
         given = {"env": environment(folder), "check": True, "timeout": SECONDS}
         asked = subprocess.run([python, "-c", probe], capture_output=True, text=True, **given)
         where, accelerated = asked.stdout.split(maxsplit=1)
