@@ -81,7 +81,7 @@ class TestBound:
             theirs = {name: column * (1 + factor) for name, column in right.items()}
             comparison = impact88.compare({**scene, **theirs}, causes=False)
             notes.append((comparison.passed, comparison.notes[:1]))
-        loses_digits = ("112 rows agree to at least 10 digits, but not to double precision",)
+        loses_digits = ("rows that agree, but lose digits to rounding: 112",)
         assert notes == [(True, ()), (True, loses_digits), (False, ())]
 
     @pytest.mark.parametrize("digits", range(2, 8))

@@ -162,7 +162,7 @@ class TestTables:
         table["VAX"][3] = None
         comparison = impact88.compare(table)
         assert not comparison.passed
-        assert comparison.notes == ("1 row lack a result where there is one",)
+        assert comparison.notes == ("rows that lack a result where there is one: 1",)
 
 
 class TestMutants:

@@ -18,7 +18,7 @@ from .agreement import Bools
 from .conditions import Condition, find_condition, quantities_of
 from .constants import fit_constants
 from .evaluation import Edit, Floats, Program
-from .mutants import Site, describe, models, sites
+from .mutants import RANK_MODEL, Site, describe, models, sites
 from .spellings import NAMES, VELOCITIES, spelling
 
 SCREEN_ROWS = 10  # rows that disagree on which every edit is tried
@@ -28,7 +28,7 @@ MIN_HELD_OUT = 4  # rows; with fewer the search uses all
 MIN_BITS = 24.0  # of information in the rows: about a million edits are tried
 MAX_SURVIVORS = 600  # edits tried on all rows
 MAX_CONDITIONAL = 60  # edits for which a condition is looked for
-MAX_BASES = 6  # edits on top of which a second one is looked for
+MAX_BASES = 4  # edits on top of which a second one is looked for
 MAX_ALTERNATIVES = 3  # listed, of those that give the same numbers
 
 
@@ -56,7 +56,7 @@ class Sample(NamedTuple):
     def program(self, name: str, edits: tuple[Edit, ...] = ()) -> Program:
         """Return a spelling with edits on the rows; with their final velocities, if given."""
         velocities = {n: self.columns[n] for n in VELOCITIES if n in self.columns}
-        return Program(name, self.columns, edits, velocities or None)
+        return Program(name, self.columns, edits, velocities or None, tuple(self.theirs))
 
     def fits(self, names: Mapping[str, Any], alternatives: int = 1) -> Bools:
         """Return (alternatives, rows): whether all results are within their limits."""
@@ -112,8 +112,9 @@ def is_complete(rows: Bools, sample: Sample) -> bool:
     )
 
 
-def information(sample: Sample, ours: Mapping[str, Any]) -> float:
+def information(sample: Sample) -> float:
     """Return the bits that the rows that disagree hold: into how many their difference divides."""
+    ours = sample.program(NAMES[0]).base
     bits = 0.0
     for name, theirs in sample.theirs.items():
         off = np.abs(theirs - ours[name])[sample.wrong] / sample.limits[name][sample.wrong]
@@ -173,6 +174,8 @@ def search(
                 candidates.append(Candidate(name, (*base, site.edit(place)), rows))
         if name == NAMES[0] or base:
             for edit in _model_edits(name, part):
+                if base and edit.rank > RANK_MODEL:
+                    continue
                 if edited.isdisjoint(edit.changes):
                     fit = screen.fits(small.run(edit.changes))[0]
                     if fit.sum() >= need:

@@ -91,7 +91,7 @@ class Program:
     velocities : mapping of str to ndarray, optional
         Final velocities to take instead of computing them.
     wanted : sequence of str, optional
-        Compute these names only.
+        The results that are computed; all by default.
     """
 
     def __init__(
@@ -108,7 +108,8 @@ class Program:
         self.typed: Values = {**FUNCTIONS, **columns}
         self.statements = list(self.spelling.statements)
         if wanted:
-            self.statements = _ancestors(self.statements, (*wanted, *self.spelling.equations))
+            first = self.spelling.results
+            self.statements[first:] = _ancestors(self.statements[first:], wanted)
         identity = np.eye(len(self.spelling.unknowns) + 1)[1:]
         self.basis = dict(zip(self.spelling.unknowns, identity[:, :, None, None], strict=True))
         self.shown: list[Mapping[str, str]] = []
