@@ -24,8 +24,10 @@ from .spellings import NAMES, VELOCITIES, spelling
 SCREEN_ROWS = 10  # rows that disagree on which every edit is tried
 MIN_SCREENED = 2  # of them, that an edit under a condition gives
 REQUIRED = 0.96  # of the rows, that an explanation gives
+MARGIN = 0.01  # of the rows, by which a likelier explanation may give fewer
 MIN_HELD_OUT = 4  # rows; with fewer the search uses all
 MIN_BITS = 24.0  # of information in the rows: about a million edits are tried
+WITH_READING = ("impulses", "trial")  # spellings in which a mistake of the reading is looked for
 MAX_SURVIVORS = 600  # edits tried on all rows
 MAX_CONDITIONAL = 60  # edits for which a condition is looked for
 MAX_BASES = 4  # edits on top of which a second one is looked for
@@ -53,10 +55,12 @@ class Sample(NamedTuple):
         """Return the sample with some of the results."""
         return self._replace(theirs={n: self.theirs[n] for n in names if n in self.theirs})
 
-    def program(self, name: str, edits: tuple[Edit, ...] = ()) -> Program:
+    def program(
+        self, name: str, edits: tuple[Edit, ...] = (), wanted: Sequence[str] = ()
+    ) -> Program:
         """Return a spelling with edits on the rows; with their final velocities, if given."""
         velocities = {n: self.columns[n] for n in VELOCITIES if n in self.columns}
-        return Program(name, self.columns, edits, velocities or None, tuple(self.theirs))
+        return Program(name, self.columns, edits, velocities or None, wanted)
 
     def fits(self, names: Mapping[str, Any], alternatives: int = 1) -> Bools:
         """Return (alternatives, rows): whether all results are within their limits."""
@@ -64,8 +68,9 @@ class Sample(NamedTuple):
         fit = np.ones(shape, bool)
         for name, theirs in self.theirs.items():
             ours = names[name]
-            near = np.abs(ours - theirs) <= self.limits[name]
-            fit &= near | (np.isnan(ours) & np.isnan(theirs))
+            difference = np.abs(ours - theirs)
+            near = (difference <= self.limits[name]) & np.isfinite(difference)
+            fit &= near | ~(np.isfinite(ours) | np.isfinite(theirs))
             if not fit.any():
                 break
         return fit
@@ -156,10 +161,11 @@ def search(
     candidates: list[Candidate] = []
     edited = {key for edit in base for key in edit.changes}
     for name in names:
-        small, full = screen.program(name, base), sample.program(name, base)
+        wanted = tuple(sample.theirs) if part == "velocities" else ()
+        small, full = (s.program(name, base, wanted) for s in (screen, sample))
         need = min(MIN_SCREENED, places.size)
         hits: list[tuple[int, Site, int]] = []
-        for site in _sites(name, part, name == NAMES[0] or bool(base)):
+        for site in _sites(name, part, name in WITH_READING or bool(base)):
             if edited.isdisjoint(site.targets):
                 values = small.propagate(site.values(small))
                 counts = screen.fits(values, len(site.options)).sum(1)
@@ -173,6 +179,7 @@ def search(
             for place, rows in zip(options, fits, strict=True):
                 candidates.append(Candidate(name, (*base, site.edit(place)), rows))
         if name == NAMES[0] or base:
+            small, full = screen.program(name, base), sample.program(name, base)
             for edit in _model_edits(name, part):
                 if base and edit.rank > RANK_MODEL:
                     continue
@@ -212,7 +219,9 @@ def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candi
 
     def confirmed(candidates: Sequence[Candidate]) -> Candidate | None:
         usable = [c for c in candidates if is_complete(c.rows, sample)]
-        usable.sort(key=lambda c: c.rank)
+        best = max((score(c.rows, sample) for c in usable), default=0)
+        margin = MARGIN * sample.wrong.size
+        usable.sort(key=lambda c: (score(c.rows, sample) < best - margin, c.rank))
         for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
             if is_complete(candidate.gives(held_out), held_out):
                 texts = [c.text for c in usable[place + 1 :] if c.condition == candidate.condition]

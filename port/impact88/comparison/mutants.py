@@ -352,10 +352,9 @@ def describe(edit: Edit, name: str) -> str:
     """Return a sentence: what is written in which statement, and what should be."""
     if edit.says:
         return edit.says
-    parts = [
-        f"{new}, should be {old}" for new, old in zip(edit.written, edit.expected, strict=True)
-    ]
-    statements = [statement_of(name, target) for target in edit.changes]
-    subjects = " and ".join(dict.fromkeys(statement.subject for statement in statements))
-    places = " and ".join(f"{s.target} = {s.text}" for s in statements)
-    return f"{subjects}: {'; '.join(parts)}; in {places}"
+    target, *twins = edit.changes
+    statement = statement_of(name, target)
+    pairs = dict.fromkeys(zip(edit.written, edit.expected, strict=True))
+    parts = "; ".join(f"{new}, should be {old}" for new, old in list(pairs)[:2])
+    sentence = f"{statement.subject}: {parts}, in {target} = {statement.text}"
+    return f"{sentence} (likewise in {', '.join(twins)})" if twins else sentence
