@@ -170,10 +170,18 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
         inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
         terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
         bound = (np.abs(inverse) @ terms)[..., 0]
-        disparity = _disparity(columns)[:, None]
-        speeds = np.abs(solution[:, :4]).max(1, keepdims=True)
-        spins = np.abs(solution[:, 4:]).max(1, keepdims=True)
-        bound += disparity * np.concatenate([np.repeat(speeds, 4, 1), np.repeat(spins, 2, 1)], 1)
+        speed = np.abs(solution[:, :4]).max(1)
+        spin = np.abs(solution[:, 4:]).max(1)
+        # a spin is found beside the angular momentum of the mass centres
+        spins = [
+            np.fmax(spin, np.where(columns["M"] == 4.0, 0.0, m * np.abs(d) * speed / i))
+            for m, d, i in (
+                (columns["MA"], columns["DA"], columns["IA"]),
+                (columns["MB"], columns["DB"], columns["IB"]),
+            )
+        ]
+        sizes = np.array([speed, speed, speed, speed, *spins]).T
+        bound += _disparity(columns)[:, None] * sizes
         bounds[part] = np.where(good[:, None], bound, np.nan)
     allowed = dict(zip(VELOCITIES, (ELIMINATION_STEPS * EPSILON * bounds).T, strict=True))
     return {name: allowed[name] for name in names if name in allowed} | _follow(
