@@ -80,18 +80,21 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
     bounds = {name: np.empty(size) for name in (*names, "slide")}
     sliding = np.empty(size)
     for part in strips(size):
-        moved, sliding[part] = _moved({n: scene[n][part] for n in COLUMNS}, names)
-        for name, bound in moved.items():
+        effects, sliding[part] = _rounding_effects({n: scene[n][part] for n in COLUMNS}, names)
+        for name, bound in effects.items():
             bounds[name][part] = bound
     ties = np.abs(sliding) <= bounds.pop("slide")
-    flipped = {**scene, "MU": np.where(scene["MU"] == -10.0, scene["MU"], -scene["MU"])}
+    reversed_friction = {**scene, "MU": np.where(scene["MU"] == -10.0, scene["MU"], -scene["MU"])}
     status = values.pop("STATUS").astype(int)
     return Reference(
         values,
         bounds,
         _scales(scene, values),
         ties,
-        {name: np.where(ties, column, np.nan) for name, column in solve(flipped, names).items()}
+        {
+            name: np.where(ties, column, np.nan)
+            for name, column in solve(reversed_friction, names).items()
+        }
         if ties.any()
         else values,
         (status & NO_ANSWER_NEEDED) > 0,
@@ -104,21 +107,23 @@ def _finite(scene: Mapping[str, Floats]) -> dict[str, Floats]:
     return {n: np.minimum(c, LARGEST_BODY) if n in bodies else c for n, c in scene.items()}
 
 
-def _moved(scene: Mapping[str, Floats], names: Sequence[str]) -> tuple[dict[str, Floats], Floats]:
+def _rounding_effects(
+    scene: Mapping[str, Floats], names: Sequence[str]
+) -> tuple[dict[str, Floats], Floats]:
     """Return the bounds of results and of the sliding velocity "slide", and that velocity."""
     impulses = {name: impulse for name, impulse in IMPULSES.items() if name in names}
-    judged = (*names, "slide", *impulses.values())
-    program = Program("impulses", _finite(scene), wanted=judged)
+    outputs = (*names, "slide", *impulses.values())
+    program = Program("impulses", _finite(scene), wanted=outputs)
     base = program.base
     targets = [s.target for s in program.statements if s.target not in ("point", "pivot", "stick")]
     moves = {target: base[target] * (1 + STEP) for target in (*COLUMNS[:-1], *targets)}
     moves["MU"] = np.where(base["MU"] == -10.0, base["MU"], moves["MU"])
-    sums = {name: np.zeros(program.size) for name in judged}
+    sums = {name: np.zeros(program.size) for name in outputs}
     for target, value in moves.items():
-        changed = program.propagate({target: value})
+        outcome = program.propagate({target: value})
         for name, total in sums.items():
-            if changed[name] is not base[name]:
-                total += np.abs(changed[name] - base[name])
+            if outcome[name] is not base[name]:
+                total += np.abs(outcome[name] - base[name])
     for name, impulse in impulses.items():  # a program may have it from either
         sums[name] = np.fmax(sums[name], sums.pop(impulse))
     factor = SAFETY * EPSILON / STEP
@@ -183,9 +188,9 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
         sizes = np.array([speed, speed, speed, speed, *spins]).T
         bound += _disparity(columns)[:, None] * sizes
         bounds[part] = np.where(good[:, None], bound, np.nan)
-    allowed = dict(zip(VELOCITIES, (ELIMINATION_STEPS * EPSILON * bounds).T, strict=True))
-    return {name: allowed[name] for name in names if name in allowed} | _follow(
-        scene, allowed, [name for name in names if name not in allowed]
+    limits = dict(zip(VELOCITIES, (ELIMINATION_STEPS * EPSILON * bounds).T, strict=True))
+    return {name: limits[name] for name in names if name in limits} | _follow(
+        scene, limits, [name for name in names if name not in limits]
     )
 
 
@@ -205,7 +210,7 @@ def _follow(
     program = Program("impulses", _finite(scene), (), velocities)
     sums = {name: np.zeros(program.size) for name in names}
     for velocity, bound in bounds.items():
-        changed = program.propagate({velocity: velocities[velocity] + bound})
+        outcome = program.propagate({velocity: velocities[velocity] + bound})
         for name, total in sums.items():
-            total += np.abs(changed[name] - program.base[name])
+            total += np.abs(outcome[name] - program.base[name])
     return sums

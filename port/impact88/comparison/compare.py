@@ -103,9 +103,9 @@ def compare_columns(
     )
     if not places.size:
         return comparison, table.wrong
-    found = find_causes(table) if causes else ()
-    disagreements = _disagreements(table, bool(found))
-    return replace(comparison, causes=found, disagreements=disagreements), table.wrong
+    cause_list = find_causes(table) if causes else ()
+    disagreements = _disagreements(table, bool(cause_list))
+    return replace(comparison, causes=cause_list, disagreements=disagreements), table.wrong
 
 
 def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
@@ -123,12 +123,12 @@ def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
         where = None
         if quantities:
             where = find_condition(quantities, misfit[rows], ~table.wrong[rows])
-        compared = np.isfinite(table.theirs[name]) & np.isfinite(table.ours[name])
+        pairs = np.isfinite(table.theirs[name]) & np.isfinite(table.ours[name])
         disagreements.append(
             Disagreement(
                 name,
                 int(misfit.sum()),
-                int(compared.sum()),
+                int(pairs.sum()),
                 worst + 1,
                 str(table.columns[name][worst]).strip(),
                 float(table.ours[name][worst]),

@@ -81,10 +81,10 @@ Trial = Callable[[Floats], Mapping[str, Any]]
 def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
     """Return the edits of a part of a spelling by one constant that the rows agree on."""
     wrong = np.flatnonzero(sample.wrong)
-    few = sample.rows(wrong[np.linspace(0, wrong.size - 1, min(ROWS, wrong.size)).astype(int)])
-    program = few.program(name)
-    edits = _statement_constants(few, program, part)
-    return edits + _column_constants(few, program) if name == NAMES[0] else edits
+    subset = sample.rows(wrong[np.linspace(0, wrong.size - 1, min(ROWS, wrong.size)).astype(int)])
+    program = subset.program(name)
+    edits = _statement_constants(subset, program, part)
+    return edits + _column_constants(subset, program) if name == NAMES[0] else edits
 
 
 def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
@@ -100,11 +100,11 @@ def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
                 trial = _column_trial(program, side, group, form)
                 (constant,) = _fit(sample, trial, form, 1)
                 if np.isfinite(constant):
-                    number, known = _written(constant, form)
+                    number, meaning = _digits_and_meaning(constant, form)
                     verb = "read" if side == "<" else "shown"
-                    says = f"{', '.join(group)} {form.says.format(number)}, as {verb}{known}"
+                    says = f"{', '.join(group)} {form.says.format(number)}, as {verb}{meaning}"
                     changes = {f"{side} {n}": form.text.format(n, number) for n in group}
-                    edits.append(Edit(says, changes, RANK_KNOWN if known else RANK - 1))
+                    edits.append(Edit(says, changes, RANK_KNOWN if meaning else RANK - 1))
     return edits
 
 
@@ -125,9 +125,9 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     reading = {s.target for s in text.statements[: text.own]} if program.name != NAMES[0] else set()
     places: dict[str, dict[str, str]] = {}
     for site in sites(program.name, part):
-        (target, *more), expression = site.targets, site.expressions[0]
+        (target, *twins), expression = site.targets, site.expressions[0]
         if (
-            not more
+            not twins
             and len(site.expressions) == 1
             and target not in reading
             and expression not in VELOCITIES
@@ -144,13 +144,13 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
             constants = _fit(sample, trial, form, len(values))
             for hole, constant in zip(values, constants, strict=True):
                 if np.isfinite(constant):
-                    number, known = _written(constant, form)
-                    expected = expressions[hole]
-                    written = form.text.format(f"({expected})", number)
-                    changes = {target: hole.replace(slot_name(0), f"({written})")}
-                    rank = RANK_KNOWN if known else RANK
-                    written = ast.unparse(parse(written)) + known
-                    edits.append(Edit("", changes, rank, (written,), (expected,)))
+                    number, meaning = _digits_and_meaning(constant, form)
+                    old_text = expressions[hole]
+                    new_text = form.text.format(f"({old_text})", number)
+                    changes = {target: hole.replace(slot_name(0), f"({new_text})")}
+                    rank = RANK_KNOWN if meaning else RANK
+                    new_text = ast.unparse(parse(new_text)) + meaning
+                    edits.append(Edit("", changes, rank, (new_text,), (old_text,)))
     return edits
 
 
@@ -199,10 +199,10 @@ def _fit(sample: "Sample", trial: Trial, form: Form, count: int) -> list[float]:
         new = np.where(np.isfinite(step), new - step, new)
         if not iteration:  # what does not depend on the constant tells nothing of it
             new[~np.any(good & (slope != 0), 0)] = np.nan
-    return [_agreed(row, form) for row in new]
+    return [_common_constant(row, form) for row in new]
 
 
-def _agreed(values: Floats, form: Form) -> float:
+def _common_constant(values: Floats, form: Form) -> float:
     """Return the constant that rows agree on, with the fewest digits; NaN if they do not."""
     values = values[np.isfinite(values)]
     if values.size < MIN_ROWS:
@@ -216,12 +216,12 @@ def _agreed(values: Floats, form: Form) -> float:
     return float(f"{middle:.9g}") if spread > 0 or abs(middle) > 1e-300 else middle
 
 
-def _written(constant: float, form: Form) -> tuple[str, str]:
+def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:
     """Return a constant's digits, and what it is known as."""
-    known = [
+    meanings = [
         name
         for name, value in KNOWN.items()
         if form is FACTOR
         and min(abs(constant / value - 1), abs(constant * value - 1)) < KNOWN_TOLERANCE
     ]
-    return f"{constant:.10g}", f" ({known[0]})" if known else ""
+    return f"{constant:.10g}", f" ({meanings[0]})" if meanings else ""

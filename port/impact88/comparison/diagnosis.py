@@ -69,8 +69,8 @@ class Sample(NamedTuple):
         for name, theirs in self.theirs.items():
             ours = names[name]
             difference = np.abs(ours - theirs)
-            near = (difference <= self.limits[name]) & np.isfinite(difference)
-            fit &= near | ~(np.isfinite(ours) | np.isfinite(theirs))
+            close = (difference <= self.limits[name]) & np.isfinite(difference)
+            fit &= close | ~(np.isfinite(ours) | np.isfinite(theirs))
             if not fit.any():
                 break
         return fit
@@ -159,14 +159,14 @@ def search(
     places = wrong[np.linspace(0, wrong.size - 1, min(SCREEN_ROWS, wrong.size)).astype(int)]
     screen = sample.rows(places)
     candidates: list[Candidate] = []
-    edited = {key for edit in base for key in edit.changes}
+    targets = {key for edit in base for key in edit.changes}
     for name in names:
         wanted = tuple(sample.theirs) if part == "velocities" else ()
         small, full = (s.program(name, base, wanted) for s in (screen, sample))
         need = min(MIN_SCREENED, places.size)
         hits: list[tuple[int, Site, int]] = []
         for site in _sites(name, part, name in WITH_READING or bool(base)):
-            if edited.isdisjoint(site.targets):
+            if targets.isdisjoint(site.targets):
                 values = small.propagate(site.values(small))
                 counts = screen.fits(values, len(site.options)).sum(1)
                 hits += [(int(counts[k]), site, int(k)) for k in np.flatnonzero(counts >= need)]
@@ -183,7 +183,7 @@ def search(
             for edit in _model_edits(name, part):
                 if base and edit.rank > RANK_MODEL:
                     continue
-                if edited.isdisjoint(edit.changes):
+                if targets.isdisjoint(edit.changes):
                     fit = screen.fits(small.run(edit.changes))[0]
                     if fit.sum() >= need:
                         rows = sample.fits(full.run(edit.changes))[0]
@@ -217,7 +217,7 @@ def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
 def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candidate | None:
     """Return the likeliest program that gives the rows, and those kept out of the search."""
 
-    def confirmed(candidates: Sequence[Candidate]) -> Candidate | None:
+    def confirm(candidates: Sequence[Candidate]) -> Candidate | None:
         usable = [c for c in candidates if is_complete(c.rows, sample)]
         best = max((score(c.rows, sample) for c in usable), default=0)
         margin = MARGIN * sample.wrong.size
@@ -225,26 +225,26 @@ def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candi
         for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
             if is_complete(candidate.gives(held_out), held_out):
                 texts = [c.text for c in usable[place + 1 :] if c.condition == candidate.condition]
-                others = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
-                return candidate._replace(alternatives=others[:MAX_ALTERNATIVES])
+                distinct_texts = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
+                return candidate._replace(alternatives=distinct_texts[:MAX_ALTERNATIVES])
         return None
 
     names = NAMES if part == "velocities" else NAMES[:1]
     singles = search(sample, part, names)
-    if (cause := confirmed(singles)) is not None:
+    if (cause := confirm(singles)) is not None:
         return cause
-    if (cause := confirmed(_conditional(singles, sample))) is not None:
+    if (cause := confirm(_conditional(singles, sample))) is not None:
         return cause
     constants = [
         Candidate(name, (edit,), sample.fits(sample.program(name, (edit,)).base)[0])
         for name in names
         for edit in fit_constants(sample, name, part)
     ]
-    if (cause := confirmed([*constants, *_conditional(constants, sample)])) is not None:
+    if (cause := confirm([*constants, *_conditional(constants, sample)])) is not None:
         return cause
     for base in _bases(singles, sample):
         pairs = search(sample, part, (base.name,), base.edits)
-        if (cause := confirmed([*pairs, *_conditional(pairs[:10], sample)])) is not None:
+        if (cause := confirm([*pairs, *_conditional(pairs[:10], sample)])) is not None:
             return cause
     return None
 

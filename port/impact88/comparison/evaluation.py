@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Values = dict[str, Any]
 
 
-def _single(x: Any) -> Any:
+def round_to_single(x: Any) -> Any:
     """Return numbers rounded to single precision."""
     return np.asarray(x, np.float32).astype(np.float64)
 
@@ -28,7 +28,7 @@ FUNCTIONS: Mapping[str, Any] = {
     for name in "sin cos tan sqrt hypot where abs sign trunc rint fmod minimum maximum".split()
 } | {
     "pi": np.pi,
-    "single": _single,
+    "single": round_to_single,
     "round_half_up": lambda x: np.floor(x + 0.5),
 }
 """What statements and edits may call."""
@@ -71,10 +71,10 @@ def stack(values: Sequence[Any], size: int) -> Any:
         for place, array in enumerate(arrays):
             out[place] = array
         return out
-    stacked = np.empty((largest.shape[0], len(arrays), size))
+    block = np.empty((largest.shape[0], len(arrays), size))
     for place, array in enumerate(arrays):
-        stacked[:, place] = array if array.ndim < 3 else array[:, 0]
-    return stacked
+        block[:, place] = array if array.ndim < 3 else array[:, 0]
+    return block
 
 
 class Program:
@@ -158,14 +158,14 @@ class Program:
 
     def _advance(self, names: Values, dirty: set[str], texts: Mapping[str, str]) -> Values:
         """Compute what is edited or reads a dirty name; what is dirty at first keeps its value."""
-        fixed = frozenset(dirty)
+        constants = frozenset(dirty)
         last = self.spelling.equations[-1] if self.spelling.unknowns else ""
         linear = self.linear
         for statement in self.statements[self._first :]:
             target = statement.target
             text = texts.get(target, statement.text)
             is_stale = target in texts or target not in names
-            if target not in fixed and (is_stale or not dirty.isdisjoint(statement.reads)):
+            if target not in constants and (is_stale or not dirty.isdisjoint(statement.reads)):
                 scope = {**names, **self.basis} if target in linear else names
                 names[target] = evaluate(text, scope)
                 dirty.add(target)
@@ -210,10 +210,10 @@ class Program:
 
 def _ancestors(statements: Sequence[Statement], wanted: Sequence[str]) -> list[Statement]:
     """Return the statements that names need."""
-    needed, chosen = set(wanted), []
+    inputs, chosen = set(wanted), []
     for statement in reversed(statements):
-        if statement.target in needed:
-            needed |= statement.reads
+        if statement.target in inputs:
+            inputs |= statement.reads
             chosen.append(statement)
     return chosen[::-1]
 

@@ -100,17 +100,17 @@ class Table:
             return
         bounds = elimination_bounds({n: c[rows] for n, c in self.scene.items()}, self.names)
         within = np.ones(rows.size, bool)
-        large = np.zeros(rows.size, bool)
+        sizable = np.zeros(rows.size, bool)
         for name in self.names:
             self.elimination[name][rows] = np.nan_to_num(bounds[name])
             difference = np.abs(self.theirs[name] - self.ours[name])[rows]
             misfit = self.misfit[name][rows]
             within &= ~misfit | (difference <= bounds[name] + self._limit(name)[rows])
-            large |= misfit & (difference > NO_DIGIT_LEFT * self.reference.scales[name][rows])
+            sizable |= misfit & (difference > NO_DIGIT_LEFT * self.reference.scales[name][rows])
         for name in self.names:
             self.misfit[name][rows[within]] = False
-        self.lost[rows[within & ~large]] = True
-        self.unstable[rows[within & large]] = True
+        self.lost[rows[within & ~sizable]] = True
+        self.unstable[rows[within & sizable]] = True
 
     def relative_difference(self, name: str) -> Floats:
         """Return differences where a result disagrees, relative to the largest of its kind."""

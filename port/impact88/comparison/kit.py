@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import UserError
 from ..files import packaged_bytes, write_folder
 from .agreement import Bools
-from .numbers import numbers
+from .numbers import digits_written, numbers
 from .spellings import COLUMNS, VELOCITIES
 
 FROZEN_ID = "1988.1"
@@ -23,6 +23,7 @@ HEAD = ("id", "class", "expect")
 ANSWER = "answer"
 REFUSE = "refuse"
 EITHER = "either"
+MIN_DIGITS = 6  # of a kit's answers: single precision has them
 EMPTY = ("", "nan", "null", "none")
 
 MISSING = "the table has no row with this id"
@@ -33,6 +34,7 @@ PARTIAL = "some of the six results are missing"
 NO_NUMBER = "text or infinity in place of a number"
 SURPLUS = "a number, where there is no answer"
 DISAGREES = "a result disagrees"
+COARSE = "the results are written with too few digits to judge a program"
 COPIED = "a result disagrees: all six are those of another vector"
 
 
@@ -157,6 +159,9 @@ class Answers:
         wrong : ndarray of bool
             Vectors of which a result disagrees.
         """
+        digits = [digits_written(self.results[name]) for name in VELOCITIES]
+        if any(count is not None and count[1] < MIN_DIGITS for count in digits):
+            self.reasons = {v["id"]: self.reasons.get(v["id"], COARSE) for v in self.vectors}
         six = [tuple(self.results[n][k] for n in VELOCITIES) for k in range(len(self.vectors))]
         counts: dict[tuple[str, ...], int] = {}
         for texts in six:
@@ -164,14 +169,14 @@ class Answers:
         for place in np.flatnonzero(wrong):
             reason = COPIED if counts[six[place]] > 1 else DISAGREES
             self.reasons.setdefault(self.vectors[place]["id"], reason)
-        failed: dict[str, list[str]] = {}
+        failures: dict[str, list[str]] = {}
         for label, reason in self.reasons.items():
-            failed.setdefault(reason, []).append(label)
+            failures.setdefault(reason, []).append(label)
         total = len(self.vectors)
         return {
             "id": FROZEN_ID,
             "vectors": total,
             "passed": total - len(self.reasons),
-            "failed": failed,
+            "failed": failures,
             "stray": self.stray,
         }

@@ -56,7 +56,11 @@ def _mistake_of_table(table: Table, names: Sequence[str]) -> str:
     pairs = [(table.ours[n], table.theirs[n], table.units[n], table.misfit[n]) for n in names]
     if all(cut_digits(*pair) for pair in pairs):
         return "the last digit is cut, not rounded"
-    if all(single_precision(ours, theirs) for ours, theirs, _, _ in pairs):
+    bounds = table.reference.bounds
+    if all(
+        single_precision(*pair[:2], bounds[n], pair[2])
+        for n, pair in zip(names, pairs, strict=True)
+    ):
         return "results are computed or written in single precision (float32)"
     return ""
 
@@ -122,9 +126,9 @@ class Diagnosis:
                 group = groups.pop(0)
             if candidate is None:
                 break
-            given = [n for n in names if candidate.gives(held_out.only([n])).mean() >= REQUIRED]
-            causes.append(self._cause(candidate, given or group, given or group, follows=True))
-            names = [n for n in names if n not in (given or group)]
+            fitting = [n for n in names if candidate.gives(held_out.only([n])).mean() >= REQUIRED]
+            causes.append(self._cause(candidate, fitting or group, fitting or group, follows=True))
+            names = [n for n in names if n not in (fitting or group)]
         return tuple(causes)
 
     def _sample(self, rows: Places, names: Sequence[str]) -> Sample:

@@ -152,7 +152,7 @@ def near_names(name: str, scope: Sequence[str]) -> list[str]:
 def _options(node: ast.expr, names: Sequence[str], unknowns: frozenset[str]) -> list[Option]:
     """Return what may be written for a node; ``names`` may be written for a name."""
     text = ast.unparse(node)
-    whole = {"a": text}
+    itself = {"a": text}
     if isinstance(node, ast.Constant):
         return [Option(number, {}) for number in CONSTANTS.split("; ") if number != text]
     options = []
@@ -161,15 +161,15 @@ def _options(node: ast.expr, names: Sequence[str], unknowns: frozenset[str]) -> 
         if _match(pattern, node, parts):
             options += [Option(template, parts) for template in templates]
     if isinstance(node, ast.Compare):
-        return [*options, Option("a != a", whole), Option("a == a", whole)]
+        return [*options, Option("a != a", itself), Option("a == a", itself)]
     if isinstance(node, ast.Name) and text != "pi":
-        near = near_names(text, names)
-        others = [n for n in names if n not in near and n != text]
-        options += [Option("a", {"a": name}) for name in near]
-        options += [Option("a", {"a": name}, RANK_FAR) for name in others]
+        similar = near_names(text, names)
+        distant = [n for n in names if n not in similar and n != text]
+        options += [Option("a", {"a": name}) for name in similar]
+        options += [Option("a", {"a": name}, RANK_FAR) for name in distant]
     inside = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
     general = ANY if inside.isdisjoint(unknowns) else LINEAR
-    return options + [Option(template, whole) for template in general.split("; ")]
+    return options + [Option(template, itself) for template in general.split("; ")]
 
 
 def _nodes(tree: ast.expr) -> list[ast.expr]:
@@ -294,9 +294,9 @@ def models() -> tuple[Edit, ...]:
         if line.startswith("["):
             section = line
         elif " | " in line and not line.startswith("#"):
-            says, rest = line.split(" | ", 1)
+            says, assignments = line.split(" | ", 1)
             changes = {}
-            for side, part in zip("<>", (rest + ";;").split(";;"), strict=False):
+            for side, part in zip("<>", (assignments + ";;").split(";;"), strict=False):
                 for assignment in filter(str.strip, part.split(";")):
                     target, expression = assignment.strip().split(" = ", 1)
                     changes[target if section == "[laws]" else f"{side} {target}"] = expression
@@ -332,15 +332,15 @@ def _columns(side: str, names: Sequence[str], how: str) -> Iterator[Edit]:
         for says, form in _FORMS.items():
             changes = {f"{side} {name}": form.replace("@", name)}
             yield Edit(f"{says.format(name)}, {how}", changes, RANK_MODEL + 1)
-        near = near_names(name, names)
-        for other in near:
+        similar = near_names(name, names)
+        for other in similar:
             says = f"{other} in place of {name}, {how}"
             yield Edit(says, {f"{side} {name}": other}, RANK_MODEL + 1)
             if other > name:
                 swap = {f"{side} {name}": other, f"{side} {other}": name}
                 yield Edit(f"{name} and {other} exchanged, {how}", swap, RANK_MODEL + 1)
         for other in names:
-            if side == ">" and other not in near and other != name:
+            if side == ">" and other not in similar and other != name:
                 says = f"{other} in place of {name}, {how}"
                 yield Edit(says, {f"{side} {name}": other}, RANK_FAR)
         for row in ("before", "after") if side == "<" else ():

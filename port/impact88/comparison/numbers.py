@@ -44,6 +44,16 @@ def _digits(text: str) -> tuple[int, int] | None:
     return len(fraction) - int(exponent or 0), len(digits)
 
 
+def digits_written(column: Any) -> tuple[int, int] | None:
+    """Return the most decimals and significant digits of a column; None if all numbers are 0."""
+    cells = np.asarray(column)
+    cells = cells[np.linspace(0, cells.size - 1, min(MAX_CELLS, cells.size)).astype(int)]
+    digits = [d for d in map(_digits, map(str, cells.tolist())) if d]
+    if not digits:
+        return None
+    return max(decimals for decimals, _ in digits), max(count for _, count in digits)
+
+
 def units(columns: Mapping[str, Any]) -> dict[str, Floats]:
     """Return one unit of the last digit that each number is written with.
 
@@ -53,13 +63,7 @@ def units(columns: Mapping[str, Any]) -> dict[str, Floats]:
     is the longest number of a column. A column of zeros has the digits of the longest column. From
     `FULL_PRECISION` digits on the unit is 0.
     """
-    counts: dict[str, tuple[int, int]] = {}
-    for name, column in columns.items():
-        cells = np.asarray(column)
-        cells = cells[np.linspace(0, cells.size - 1, min(MAX_CELLS, cells.size)).astype(int)]
-        digits = [d for d in map(_digits, map(str, cells.tolist())) if d]
-        if digits:
-            counts[name] = max(d for d, _ in digits), max(s for _, s in digits)
+    counts = {name: d for name, c in columns.items() if (d := digits_written(c)) is not None}
     longest = max((s for _, s in counts.values()), default=FULL_PRECISION)
     decimals = max((d for d, _ in counts.values()), default=FULL_PRECISION)
     result = {}

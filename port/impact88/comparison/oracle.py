@@ -56,25 +56,27 @@ def oracle(
     >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]
     ('-13.263', '84d433d66f')
     """
-    given: list[Any] = [scenes]
+    inputs: list[Any] = [scenes]
     if isinstance(scenes, Iterable) and not isinstance(scenes, Mapping):
-        given = list(scenes)
-    checked = [_scene(scene) for scene in given]
-    if not checked:
+        inputs = list(scenes)
+    valid_scenes = [_scene(scene) for scene in inputs]
+    if not valid_scenes:
         return []
-    digits = _reference_digits(checked) if reference else [{}] * len(checked)
-    texts = {name: [scene[name] for scene in checked] for name in SCENE}
+    digits = _reference_digits(valid_scenes) if reference else [{}] * len(valid_scenes)
+    texts = {name: [scene[name] for scene in valid_scenes] for name in SCENE}
     numbers = {name: np.array(list(map(to_double, c))) for name, c in texts.items()}
-    solved = solve(numbers, ["STATUS", "COND", *COMPARED])
+    doubles = solve(numbers, ["STATUS", "COND", *COMPARED])
     bounds = agreement.reference(numbers).bounds
     applesoft = _applesoft(texts)
     answers = []
-    for row, scene in enumerate(checked):
+    for row, scene in enumerate(valid_scenes):
         listing_run = run(scene)
         results = {}
         for name in COMPARED:
-            printed, stored, decimal = applesoft.get(name, [(None, None, None)] * len(checked))[row]
-            double = float(solved[name][row])
+            printed, stored, decimal = applesoft.get(
+                name, [(None, None, None)] * len(valid_scenes)
+            )[row]
+            double = float(doubles[name][row])
             results[name] = {
                 "printed": printed,
                 "stored": stored,
@@ -90,8 +92,8 @@ def oracle(
                 "printout": listing_run.printout,
                 "ending": "ZERO DETERMINANT" if listing_run.zero_determinant else listing_run.error,
                 "results": results,
-                "condition": _finite(float(solved["COND"][row])),
-                "status": status.names(int(solved["STATUS"][row])),
+                "condition": _finite(float(doubles["COND"][row])),
+                "status": status.names(int(doubles["STATUS"][row])),
             }
         )
     return answers

@@ -13,7 +13,7 @@ MIN_ROWS = 4
 MAX_ROWS = 2000  # that are looked up
 MAX_NEIGHBOURS = 8  # rows of nearly the same first velocity
 MIN_FRACTION = 0.9  # of the rows that hold another row's results
-SINGLE_EPSILON = 3e-7  # what results in single precision are off, at most
+SINGLE_ROUNDING = 2.0**29  # of a rounding in double precision: 52 bits less 23
 
 
 def other_rows(
@@ -28,10 +28,10 @@ def other_rows(
         return ""
     rows = np.flatnonzero(wrong)[:MAX_ROWS]
     order = np.argsort(ours[names[0]], kind="stable")
-    ordered = ours[names[0]][order]
+    sorted_values = ours[names[0]][order]
     first, tolerance = theirs[names[0]][rows], limits[names[0]][rows]
-    starts = np.searchsorted(ordered, first - tolerance)
-    stops = np.minimum(np.searchsorted(ordered, first + tolerance), starts + MAX_NEIGHBOURS)
+    starts = np.searchsorted(sorted_values, first - tolerance)
+    stops = np.minimum(np.searchsorted(sorted_values, first + tolerance), starts + MAX_NEIGHBOURS)
     shifts = []
     for row, start, stop in zip(rows, starts, stops, strict=True):
         for other in order[start:stop]:
@@ -57,9 +57,13 @@ def cut_digits(ours: Floats, theirs: Floats, units: Floats, wrong: Bools) -> boo
     return bool(((unit > 0) & (off > 0) & (off < unit * (1 + 1e-9))).all())
 
 
-def single_precision(ours: Floats, theirs: Floats) -> bool:
-    """Return whether a column is in single precision and right in it."""
+def single_precision(ours: Floats, theirs: Floats, bounds: Floats, units: Floats) -> bool:
+    """Return whether a column is in single precision, and off by no more than its rounding.
+
+    ``bounds`` is what rounding may change in double precision.
+    """
+    known = np.isfinite(ours) & np.isfinite(theirs)
     with np.errstate(all="ignore"):
-        close = np.abs(theirs - ours) <= SINGLE_EPSILON * np.abs(ours)
-        single = theirs == theirs.astype(np.float32)
-    return bool((close & single)[np.isfinite(ours) & np.isfinite(theirs)].all())
+        close = np.abs(theirs - ours) <= SINGLE_ROUNDING * bounds + units / 2
+        single = np.abs(theirs - theirs.astype(np.float32)) <= units / 2
+    return bool((close & single)[known].all())

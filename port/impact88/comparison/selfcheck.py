@@ -135,8 +135,8 @@ def _port(golden: Any) -> Cases:
     for row in captured.rows(golden, captured.SCENES):
         listing_run = run(row["scene"], dos=False)
         variables = captured.memory_contents(listing_run.reals, listing_run.A)
-        expected = captured.memory_contents(row["reals"], row["A"])
-        yield row["id"], listing_run.printout == row["printout"] and variables == expected
+        capture = captured.memory_contents(row["reals"], row["A"])
+        yield row["id"], listing_run.printout == row["printout"] and variables == capture
 
 
 def _replay(golden: Any) -> Cases:
@@ -157,22 +157,22 @@ def _emulator(golden: Any) -> Cases:
         yield name, screen == texts.get("out", "")
 
 
-def _published(golden: Any) -> Cases:
+def _published_runs(golden: Any) -> Cases:
     for number, name in PUBLISHED_RUNS.items():
-        expected = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
-        yield name, run(sample(number)).printout == expected
+        capture = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
+        yield name, run(sample(number)).printout == capture
 
 
 def _magazine(golden: Any) -> Cases:
     folder = golden.joinpath("printouts")
-    program, printed = (
+    program, table = (
         folder.joinpath(f"compute1980.{ending}").read_bytes().decode() for ending in ("bas", "txt")
     )
     _, screen = captured.session(program)
-    pairs = zip_longest(printed.split(), screen.split(), fillvalue="nan")
-    for place, (expected, number) in enumerate(pairs, 1):
+    pairs = zip_longest(table.split(), screen.split(), fillvalue="nan")
+    for place, (capture, number) in enumerate(pairs, 1):
         # the magazine adds zeros before the point and at the end
-        yield f"number {place} of Table 5", Decimal(expected) == Decimal(number)
+        yield f"number {place} of Table 5", Decimal(capture) == Decimal(number)
 
 
 def _solve(golden: Any) -> Cases:
@@ -186,13 +186,15 @@ def _solve(golden: Any) -> Cases:
     scene = {n: np.array([float(vector["scene"][n]) for vector in vectors]) for n in SCENE}
     ours = reference(scene)
     for row, vector in enumerate(vectors):
-        refused = vector["expect"] == REFUSE
-        names = FINAL_VELOCITIES if refused else [n for n in ours.values if n in vector["results"]]
+        is_refused = vector["expect"] == REFUSE
+        names = (
+            FINAL_VELOCITIES if is_refused else [n for n in ours.values if n in vector["results"]]
+        )
         is_right = True
         for name in names:
             value, digits = ours.values[name][row], vector["results"][name]["reference"]
-            if refused or digits is None:
-                is_right &= not (refused and np.isfinite(value))
+            if is_refused or digits is None:
+                is_right &= not (is_refused and np.isfinite(value))
             else:
                 bound = ours.bounds[name][row]
                 is_right &= bool(value == float(digits) or abs(value - float(digits)) <= bound)
@@ -204,7 +206,7 @@ CHECKS: dict[str, tuple[str, Callable[[Any], Cases]]] = {
     "port": ("runs of the listing: printout, variables, array", _port),
     "replay": ("the same runs over arrays: every character", _replay),
     "emulator": ("Applesoft programs: every character displayed", _emulator),
-    "published": ("runs published in 1988: every character", _published),
+    "published": ("runs published in 1988: every character", _published_runs),
     "published 1980": ("numbers of COMPUTE!'s Table 5: every digit", _magazine),
     "solve": ("vectors in double precision: every result to its digits", _solve),
 }
