@@ -139,7 +139,7 @@ def _finite(value: float) -> float | None:
 
 
 def _reference_digits(scenes: Iterable[Scene]) -> list[dict[str, str]]:
-    from ..mechanics.accuracy.reference import thirty_digits
+    from ..mechanics.reference import thirty_digits
 
     return [thirty_digits(scene) for scene in scenes]
 
