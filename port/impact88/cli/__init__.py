@@ -22,7 +22,7 @@ GONE = {
     "reconstruct": "impact88 solve FILE.toml, which solves for what the file leaves open",
     "figure": "impact88 report FILE.toml -o drawing.svg",
     "desk": "impact88 web",
-    "witness": "impact88 selfcheck --rom FILE",
+    "witness": "a checkout: IMPACT88_ROM=FILE pytest tests/comparison/test_rom.py",
     "schema": "the guide's page on JSON forms",
     "completion": "impact88 help, which lists the commands",
     "colinear": "impact88 chapter colinear",

@@ -1,12 +1,9 @@
 """impact88 selfcheck                              check this installation: pass or fail
 impact88 selfcheck --json -o qualification.json
-impact88 selfcheck --rom apple2plus.rom         against your own ROM image
 
 Replays what a real Apple II Plus did (the ROM's arithmetic, runs of the listing, programs, the
 published runs) through port, replay and emulator, compares every result of solve with 30 digits,
-and prints counts, hashes and versions: the record of an installation. --rom FILE (12,288 bytes,
-$D000 to $FFFF) types the listing in at the ROM's prompt, on an independent 6502 emulator (needs
-pip install py65), and compares what it displays and stores.
+and prints counts, hashes and versions: the record of an installation.
 
 exit status: 0 everything is as captured; 1 something is not; 2 bad input"""
 
@@ -18,7 +15,6 @@ from .output import print_json, progress
 
 def declare(parser: options.Parser) -> None:
     """Add the arguments."""
-    parser.add_argument("--rom", type=options.InputPath, metavar="FILE", help="a ROM image")
     options.add_json(parser)
     options.add_output(parser)
 

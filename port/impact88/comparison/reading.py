@@ -30,7 +30,7 @@ def read_table(table: Any) -> Columns:
     Parameters
     ----------
     table : path, mapping of columns, data frame or sequence of mappings
-        A file ending in ``.csv`` or ``.jsonl``, or the table itself.
+        A file ending in ``.csv`` or ``.jsonl``, "-" (CSV on standard input), or the table itself.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def read_table(table: Any) -> Columns:
 def _read_file(path: str) -> Columns:
     ending = os.path.splitext(path)[1].lower()
     text = read_text(path).removeprefix("\ufeff")
-    if ending == ".csv":
+    if ending == ".csv" or path == "-":
         return _read_csv(text, path)
     if ending not in (".jsonl", ".ndjson"):
         raise UserError("is not a table; expected a name ending in .csv or .jsonl", path)
