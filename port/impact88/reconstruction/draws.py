@@ -226,13 +226,13 @@ def sample(
         )
         if progress is not None:
             progress(power)
+    if state.holds.sum() < MIN_FAMILIES:
+        return None
     kept = [state.points[state.holds]]
     while sum(map(len, kept)) < count and len(kept) < MAX_ROUNDS:
         state, scale = _move(target, state, power, scale, STAGE_MOVES, rng)
         kept.append(state.points[state.holds])
     drawn = np.concatenate(kept)[:count]
-    if not len(drawn):
-        return None
     sizes = np.bincount(family)
     return Sample(problem, target.names, drawn, float(sizes.sum() ** 2 / (sizes**2).sum()))
 

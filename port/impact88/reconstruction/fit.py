@@ -58,7 +58,6 @@ class Fit:
     measured: list[Known]
     key: Array = field(default_factory=lambda: np.empty(0))
     settled: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, bool))
-    reached: int = 1
     rank: int = 0  # directions that measured values determine
 
     @property
@@ -260,7 +259,8 @@ class Search:
             starts = self._near(first, rng) if first else self.starts(BATCH, rng)
             ended += self._collect(self.descend(starts), fits)
             count = sum(fit.missed < EXACT_TOL for fit in fits)
-            if first or not ended or expected_unseen(count, ended) < MAX_UNSEEN:
+            is_full = len(fits) == MAX_IMPACTS
+            if first or is_full or not ended or expected_unseen(count, ended) < MAX_UNSEEN:
                 break
         return sorted(fits, key=lambda fit: (fit.missed > EXACT_TOL, fit.squares)), ended
 
@@ -286,20 +286,21 @@ class Search:
         )
 
     def _is_seen(self, fits: list[Fit], point: Array, close: float) -> bool:
-        """Return True, and count it, for a point that leads to an impact in ``fits``: one equal in
-        all that is determined or, of measurements, one without a ridge between."""
+        """Return True for a point that leads to an impact in ``fits``: one equal in all that is
+        determined or, of measurements, one without a ridge between."""
+        if not fits:
+            return False
         key = self.invariants(point[None])[:, 0]
-        for fit in fits:
-            same = bool((np.abs(fit.key - key)[fit.settled] < close).all())
-            if not same and self.measured:
-                first = fit.point / self.sizes
-                soft, hard = self.residuals(np.stack([first, (first + point) / 2, point]))
-                height = (soft**2).sum(1) + ((hard / TYPED_TOL) ** 2).sum(1)
-                same = bool(height[1] <= max(height[0], height[2]) + RIDGE)
-            if same:
-                fit.reached += 1
-                return True
-        return False
+        if any((np.abs(fit.key - key)[fit.settled] < close).all() for fit in fits):
+            return True
+        if not self.measured:
+            return False
+        ends = np.stack([fit.point / self.sizes for fit in fits])
+        soft, hard = self.residuals(np.concatenate([ends, (ends + point) / 2, point[None]]))
+        height = (soft**2).sum(1) + ((hard / TYPED_TOL) ** 2).sum(1)
+        count = len(fits)
+        between = height[count : 2 * count]
+        return bool((between <= np.maximum(height[:count], height[-1]) + RIDGE).any())
 
     def invariants(self, points: Array) -> Array:
         """Return all velocities (rows) of impacts (columns) in typical ones, which tell impacts

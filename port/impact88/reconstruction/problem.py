@@ -331,7 +331,9 @@ class Problem:
             for before, after in (("WA", "WAF"), ("WB", "WBF"))
         ]
         names = [*self.frames["A"], *self.frames["B"], *spins]
-        names += [n for n in COEFFICIENTS if not (self.point and n == "EM")]
+        # over impulses, what is known is linear
+        laws = zip(COEFFICIENTS, IMPULSES, strict=True)
+        names += [n if n in self.known else other for n, other in laws if not self._has_no(n)]
         names += VEHICLES
         names += [n for n in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY") if n in self.known]
         for name in names:
@@ -341,8 +343,6 @@ class Problem:
                 continue
             if amount is None:
                 self._assume(name)
-                if name in COEFFICIENTS:  # over impulses, what is known is linear
-                    name = IMPULSES[COEFFICIENTS.index(name)]
                 amount = uniform(*self._widest(name))
             self.coordinates.append(Known(name, amount, self.size(name)))
         self._turns_with_course = [v for v in self.facing if not self.point]
@@ -364,13 +364,18 @@ class Problem:
             return -np.inf, np.inf
         return -WIDEST * self.size(name), WIDEST * self.size(name)
 
+    def _has_no(self, coefficient: str) -> bool:
+        return self.point and coefficient == "EM"
+
     def _assume(self, name: str) -> None:
-        if name in self.excluded:
+        """Note the range of a coefficient whose impulse is the coordinate."""
+        coefficient = dict(zip(IMPULSES, COEFFICIENTS, strict=True)).get(name, "")
+        if coefficient in self.excluded:
             return
-        if name == "MUP":
-            self.assumed[name] = "friction up to what ends the sliding, with an allowance"
-        elif name in ("E", "EM"):
-            self.assumed[name] = "{:g} to {:g}".format(*RANGES[name])
+        if coefficient == "MUP":
+            self.assumed[coefficient] = "friction up to what ends the sliding, with an allowance"
+        elif coefficient:
+            self.assumed[coefficient] = "{:g} to {:g}".format(*RANGES[coefficient])
 
     # -- impacts
 
