@@ -47,11 +47,11 @@ class TestMistakes:
             ),
             pytest.param(
                 "impulse",
-                ("knn = R + (an + bn)**2", "knn = R + (an - bn)**2"),
-                "effective mass",
+                ("rn = -(1 + E)*gn + k", "rn = -(1 + E)*gn - k"),
+                "restitution",
                 marks=long,
             ),
-            pytest.param("four", ("k = A.m/B.m", "k = B.m/A.m"), "MA and MB", marks=long),
+            pytest.param("four", ("sliding > 0", "sliding < 0"), "sign rule", marks=long),
         ],
     )
     def test_an_edit_of_the_velocities_is_named(
@@ -59,7 +59,7 @@ class TestMistakes:
     ) -> None:
         comparison = impact88.compare(table_of(program, edit))
         (cause, *_) = comparison.causes
-        assert words in cause.edit
+        assert words in " ".join([cause.edit, *cause.alternatives])
         assert cause.rows >= 0.96 * cause.of
 
     @pytest.mark.parametrize(

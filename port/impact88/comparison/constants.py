@@ -21,6 +21,7 @@ FIRST_STEP = 1e-4
 MIN_ROWS = 2  # that give a constant
 MAX_SPREAD = 1e-2  # of the constants that the rows give, relative; the digits then decide
 EXACT_SPREAD = 1e-9  # up to which the constant has all its digits
+SHORT_TOLERANCE = 1e-12  # relative distance at which a constant has nine digits or fewer
 KNOWN_TOLERANCE = 1e-6  # relative distance at which a constant is a known one
 RANK = 5  # behind the edits without a constant
 RANK_KNOWN = 1
@@ -213,7 +214,8 @@ def _common_constant(values: Floats, form: Form) -> float:
         return np.nan
     if spread > EXACT_SPREAD * abs(middle):
         return roundest(low, high)
-    return float(f"{middle:.9g}") if spread > 0 or abs(middle) > 1e-300 else middle
+    short = float(f"{middle:.9g}")
+    return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
 
 
 def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:
@@ -224,4 +226,4 @@ def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:
         if form is FACTOR
         and min(abs(constant / value - 1), abs(constant * value - 1)) < KNOWN_TOLERANCE
     ]
-    return f"{constant:.10g}", f" ({meanings[0]})" if meanings else ""
+    return repr(constant), f" ({meanings[0]})" if meanings else ""
