@@ -37,6 +37,8 @@ OWNED = re.compile(
     r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:])"
 )
 """A number in one piece behind a label."""
+NUMERAL = re.compile(r"[-+.,E~]*[0-9][-+.,E~0-9]*")
+"""A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
 ENDING = re.compile(r"ZERODETERMINANT|\?[A-Z']{5,30}ERROR(?:IN[0-9]+)?")
 MIN_NUMBERS = 3
@@ -107,6 +109,8 @@ class Reading:
         What the row of angles may be.
     chars : dict of int to Glyph
         The glyph of each cell of a word.
+    other_labels : dict of int to list of Glyph
+        The glyphs of another label in a label's place, by its first cell.
     foreign : list of lists of Glyph
         What belongs to no cell.
     replies : dict of str to str
@@ -123,6 +127,7 @@ class Reading:
     slots: dict[str, Slot] = field(default_factory=dict)
     angle_rows: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
     chars: dict[int, Glyph] = field(default_factory=dict)
+    other_labels: dict[int, Sequence[Glyph]] = field(default_factory=dict)
     foreign: list[list[Glyph]] = field(default_factory=list)
     replies: dict[str, str] = field(default_factory=dict)
     repeated: list[tuple[str, Slot]] = field(default_factory=list)
@@ -138,8 +143,7 @@ class Reading:
             CELLS[j].row not in PROMPTS and CELLS[j].char == glyph.char and glyph.char.isalpha()
             for j, glyph in self.chars.items()
         )
-        texts = [as_printed(slot.text) for slot in self.slots.values()]
-        numbers = sum(bool(PRINTED.fullmatch(text)) for text in texts)
+        numbers = sum(bool(NUMERAL.fullmatch(slot.text)) for slot in self.slots.values())
         is_enough = numbers >= MIN_NUMBERS and letters >= 2 * MIN_NUMBERS
         return is_enough and 2 * numbers >= len(self.slots)
 
@@ -254,6 +258,8 @@ class _Reader:
             *cells, last = range(anchor.label.start, anchor.label.stop)
             self.reading.chars |= dict(zip(cells, glyphs[:-1], strict=False))
             self.reading.chars[last] = glyphs[-1]
+            if anchor.read != anchor.label.text:
+                self.reading.other_labels[anchor.label.start] = glyphs[:-1]
 
     def _read_between(
         self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]

@@ -29,7 +29,7 @@ from .page import (
     printed_rows,
 )
 from .reader import TWINS, Reading, Slot, read_printouts
-from .search import find_scene, scene_name, unseen_digits
+from .search import FINAL_SPINS, find_scene, scene_name, unseen_digits
 
 MACHINE_READ = 3
 """Misread characters of labels and numbers from which a page counts as read by a machine."""
@@ -95,14 +95,20 @@ def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
 
 def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
     """Return the verdict on a printout that lacks inputs: numbers printed twice may differ."""
-    comparison = Comparison(reading, {}, {}, "", {})
+    due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
+    comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending, {})
     findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
+    findings += comparison.text_findings()
     for name, slot in reading.repeated:
         first = reading.slots.get(name)
         if first and first.is_clean and comparison.is_contradiction(name, slot, first.text):
             findings.append(comparison.finding(Kind.NUMBER, name, slot.glyphs, first.text))
     return Verification(
-        verdict_of(findings), findings=tuple(findings), text=reading.text, span=reading.span()
+        verdict_of(findings),
+        findings=tuple(sorted(findings, key=lambda finding: finding.start)),
+        numbers={name: comparison.numbers[name] for name in due if name in reading.slots},
+        text=reading.text,
+        span=reading.span(),
     )
 
 
@@ -242,7 +248,17 @@ class Comparison:
             if (kind := self._number_kind(name))
         ]
         findings += self._reply_findings()
-        findings += [
+        findings += self.text_findings()
+        findings += self._repeated_findings()
+        if self.reading.ending != self.ending:
+            kind = Kind.LABEL if self.reading.ending else Kind.UNREAD
+            findings.append(self.finding(kind, "message", [], self.ending, len(CELLS)))
+        findings = self._settle(findings)
+        return sorted(findings, key=lambda finding: finding.start)
+
+    def text_findings(self) -> list[Finding]:
+        """Return the words, rows and other text that are not as the program prints them."""
+        findings = [
             self.finding(
                 self._word_kind(word), word.first.name, word.glyphs, word.printed, word.cells[0]
             )
@@ -253,12 +269,7 @@ class Comparison:
             cell = next(j for j, one in enumerate(CELLS) if one.row == row)
             findings.append(self.finding(Kind.ROW_LOST, TITLES[row], [], TITLES[row], cell))
         findings += [self.finding(Kind.FOREIGN, "", run, "") for run in self.reading.foreign]
-        findings += self._repeated_findings()
-        if self.reading.ending != self.ending:
-            kind = Kind.LABEL if self.reading.ending else Kind.UNREAD
-            findings.append(self.finding(kind, "message", [], self.ending, len(CELLS)))
-        findings = self._settle(findings)
-        return sorted(findings, key=lambda finding: finding.start)
+        return findings
 
     def _number_kind(self, name: str) -> Kind | None:
         """Return what a number is that was not read as printed; None for one that was."""
@@ -337,7 +348,9 @@ class Comparison:
             if cell.first:
                 words.append(Word())
             words[-1].cells.append(j)
-            if j in self.reading.chars:
+            if j in self.reading.other_labels:
+                words[-1].glyphs = [*self.reading.other_labels[j]]
+            elif j in self.reading.chars and words[-1].cells[0] not in self.reading.other_labels:
                 words[-1].glyphs.append(self.reading.chars[j])
         lost = {row for row, words in by_row.items() if not any(word.glyphs for word in words)}
         kept = [word for row, words in by_row.items() if row not in lost for word in words]
