@@ -1,8 +1,167 @@
-"""What explains a page that differs."""
+"""What explains a page that differs: a short list of causes, each tested by computing the page.
 
-from .findings import Verification
+A cause changes the scene, or the arithmetic. It is offered if it prints all but a few of the
+numbers that differ.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from decimal import Decimal
+
+import numpy as np
+
+from ..program.arithmetics import FLOAT64, Arithmetic
+from ..program.run import run
+from .findings import Finding, Kind, Verification
+from .page import INPUTS, RESULTS
+from .reader import read_printouts
+from .search import opposite, printed_fields
+
+MAX_UNEXPLAINED = 0.25
+"""Fraction of the numbers that differ which a cause may leave."""
+MIN_NUMBERS = 3
+"""Numbers that differ from which causes beyond single slips are tried."""
+SINGLE_DIGITS = 7
+"""Digits that single precision prints."""
+SINGLE_ERROR = 1e-5
+"""Relative difference of two computations in single precision: some hundred roundings."""
+LAST_ERROR = 1e-6
+"""Relative difference that other arithmetics leave in numbers of many digits."""
+DOUBLE = "computed in double precision, not by an Apple"
+SINGLE = "computed in single precision, not by an Apple"
+Scene = Mapping[str, str]
 
 
-def explained(verification: Verification) -> Verification:
-    """Return a verification with what explains it."""
-    return verification
+def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]] = ()) -> str:
+    """Return what explains a page that differs.
+
+    Parameters
+    ----------
+    verification : Verification
+        The page with its scene.
+    alternatives : sequence of mappings of str to str
+        Printed inputs of other scenes that explain the page as well.
+
+    Returns
+    -------
+    str
+        One sentence, "" if nothing of the list explains it.
+    """
+    findings = [finding for finding in verification.findings if finding.kind is Kind.NUMBER]
+    labels = [finding for finding in verification.findings if finding.kind is Kind.LABEL]
+    names = [finding.name for finding in findings if finding.name in RESULTS]
+    if len(names) >= MIN_NUMBERS and verification.scene:
+        read = {name: verification.numbers[name].read for name in names}
+        for cause, fields, error in _causes(verification):
+            missed = [
+                name
+                for name, text in read.items()
+                if not _agrees(fields.get(name, ""), text, error)
+            ]
+            if len(missed) <= MAX_UNEXPLAINED * len(names):
+                return cause + (f"; but not {', '.join(missed)}" if missed else "")
+    slips = [_slip(verification, finding, alternatives) for finding in findings]
+    slips += [
+        f"line {verification.line_of(finding.start)}: the label {finding.read} is where the "
+        f"program prints {finding.printed}"
+        for finding in labels
+    ]
+    return "; ".join(slips) if len(slips) < MIN_NUMBERS else ""
+
+
+def _slip(
+    verification: Verification, finding: Finding, alternatives: Sequence[Mapping[str, str]]
+) -> str:
+    """Return the sentence on one number that differs from all others."""
+    line = verification.line_of(finding.start)
+    if finding.name not in INPUTS:
+        return (
+            f"line {line}: {finding.name} {finding.read} alone is not what the program prints for "
+            f"the inputs ({finding.printed}); a slip, or edited later"
+        )
+    sentence = (
+        f"line {line}: {finding.name} {finding.read} is a slip, or edited later: everything else "
+        f"was computed with {finding.printed}"
+    )
+    for printed in alternatives:
+        others = [
+            f"{name} {verification.numbers[name].read} (would be {text})"
+            for name, text in printed.items()
+            if name in verification.numbers and verification.numbers[name].read != text
+        ]
+        sentence += f"; or it is {', '.join(others)}" if others else ""
+    return sentence
+
+
+def _causes(verification: Verification) -> Iterator[tuple[str, Mapping[str, str], float]]:
+    """Yield each cause, the numbers that it prints, and their relative error."""
+    scene = verification.scene
+    other = "4" if scene["M"] == "6" else "6"
+    turned = {**scene, "MU": opposite(scene["MU"])}
+    yield f"computed with M = {other} (line 350)", printed_fields({**scene, "M": other}), 0.0
+    yield "computed with the other sign of MU (line 400)", printed_fields(turned), 0.0
+    energy = verification.numbers["KI"]
+    is_short = _digits(energy.read) <= SINGLE_DIGITS
+    if is_short and _digits(energy.printed) > SINGLE_DIGITS:
+        yield SINGLE, _run_in(scene, FLOAT32), SINGLE_ERROR
+    yield DOUBLE, _run_in(scene, FLOAT64), 0.0
+    if is_short:
+        yield SINGLE, _run_in(scene, FLOAT32), SINGLE_ERROR
+    near = {name: number.printed for name, number in verification.numbers.items()}
+    yield (
+        "off in the last places: another arithmetic, or rounding where INT floors",
+        near,
+        LAST_ERROR,
+    )
+
+
+def _digits(text: str) -> int:
+    """Return the number of digits of a number without zeros at its ends."""
+    return sum(map(str.isdigit, text.partition("E")[0].strip("0.")))
+
+
+def _run_in(scene: Scene, arithmetic: Arithmetic) -> Mapping[str, str]:
+    """Return the numbers that the program prints in another arithmetic, by name."""
+    readings = read_printouts(run(scene, arithmetic).page)
+    return {name: slot.text for reading in readings for name, slot in reading.slots.items()}
+
+
+def _agrees(printed: str, read: str, error: float) -> bool:
+    """Return True for the same number, to the last place of the one with fewer."""
+    try:
+        first, second = Decimal(printed), Decimal("".join(read.split()))
+    except ArithmeticError:
+        return False
+    places = max(int(number.as_tuple().exponent) for number in (first, second))
+    unit = Decimal(1).scaleb(places)
+    if not error:
+        return first.quantize(unit) == second.quantize(unit)
+    return abs(first - second) <= max(unit, abs(first) * Decimal(error))
+
+
+def _single(x: float) -> float:
+    return float(np.float32(x))
+
+
+def _read_single(text: str, start: int) -> tuple[float, int]:
+    value, end = FLOAT64.read(text, start)
+    return _single(value), end
+
+
+FLOAT32 = Arithmetic(
+    name="float32",
+    read=_read_single,
+    LET=_single,
+    NEXT=FLOAT64.NEXT,
+    INT=FLOAT64.INT,
+    ABS=FLOAT64.ABS,
+    SIN=lambda x: _single(math.sin(x)),
+    COS=lambda x: _single(math.cos(x)),
+    write=lambda x: FLOAT64.write(float(f"{x or 0.0:.{SINGLE_DIGITS - 1}E}")),
+    errors=FLOAT64.errors,
+    unset=float("0"),
+    zero=float("0"),
+)
+"""Every number stored is rounded to 24 bits, as in GW-BASIC and its kind."""

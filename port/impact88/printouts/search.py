@@ -8,15 +8,15 @@ combinations of readings; then slips in single inputs of the best ones, while th
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..program.replay import replay
-from .costs import ALIKE, CONTRADICTED, LOST, PASSED
+from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
 from .numerals import TYPED, readings, slips, spellings, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, RESULTS
 from .reader import Reading
@@ -85,8 +85,8 @@ def scene_name(name: str) -> str:
     return "MU" if name == "MUP" else name
 
 
-def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | None, list[str]]:
-    """Return the scene that explains a page at the least cost.
+def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recovered], list[str]]:
+    """Return the scene that explains a page at the least cost, and those that do as well.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | 
     Returns
     -------
     tuple
-        The scene, None where inputs are missing; and the names of these.
+        The scenes, none where inputs are missing; and the names of these.
     """
     columns: Columns = {(name,): _options(reading, name) for name in INPUTS if name not in ANGLES}
     columns[ANGLES] = [
@@ -110,7 +110,7 @@ def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | 
         if not options and len(stored) == len(names):
             options.append((tuple(one[1] for one in stored if one), texts, 0.0))
     if missing := [name for names, options in columns.items() for name in names if not options]:
-        return None, missing
+        return [], missing
     has_spins = any(name in reading.slots for name in FINAL_SPINS)
     ms = [("6", 0.0), ("4", CONTRADICTED)] if has_spins else [("4", 0.0), ("6", ALIKE)]
     if "M" in given:
@@ -121,7 +121,9 @@ def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | 
     if best[0].mismatch >= CONTRADICTED:
         best = replay_candidates([*_combinations(columns, ms, MAX_CANDIDATES)], expected)
     as_read = best[0]
-    clean = {name for name in INPUTS if name in reading.slots and reading.slots[name].is_clean}
+    clean = {
+        name: slot.text for name, slot in reading.slots.items() if name in INPUTS and slot.is_clean
+    }
     for _ in range(BEST):
         if best[0].mismatch < CONTRADICTED:
             break
@@ -131,7 +133,10 @@ def find_scene(reading: Reading, given: Mapping[str, str]) -> tuple[Recovered | 
             break
         best = sorted([*best, *more], key=lambda found: found.cost)[:BEST]
     # slips are believed only where they explain most of what differs
-    return (best[0] if 2 * best[0].mismatch <= as_read.mismatch else as_read), []
+    if 2 * best[0].mismatch > as_read.mismatch:
+        return [as_read], []
+    limit = best[0].cost + RESPELLED
+    return [scene for scene in best if scene.cost <= limit], []
 
 
 def _typed_angles(row: Sequence[str]) -> tuple[str, ...]:
@@ -174,7 +179,7 @@ def _combinations(
         yield Candidate(printed, typed, ms[m][0], cost)
 
 
-def _edits(candidate: Candidate, clean: Collection[str]) -> Iterator[Candidate]:
+def _edits(candidate: Candidate, clean: Mapping[str, str]) -> Iterator[Candidate]:
     """Yield a scene with one input typed otherwise that prints alike, or with one slip in it.
 
     A number that was read cleanly is contradicted by a slip in it.
@@ -186,7 +191,8 @@ def _edits(candidate: Candidate, clean: Collection[str]) -> Iterator[Candidate]:
             texts.append(opposite(typed[name]))
         for rank, other in enumerate(texts):
             yield Candidate(printed, {**typed, name: other}, m, cost + PASSED * (1 + rank / 9))
-        for other, more in slips(text):
+        edits = chain(slips(text), slips(clean.get(name, text)))
+        for other, more in edits:
             total = cost + more + CONTRADICTED * (name in clean)
             yield Candidate({**printed, name: other}, {**typed, name: other}, m, total)
 

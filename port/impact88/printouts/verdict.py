@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import Glyph
@@ -18,6 +18,7 @@ from .page import (
     ANGLES,
     ASTERISKS,
     CELLS,
+    HEADING,
     INPUTS,
     NAMES,
     PROMPTS,
@@ -29,7 +30,7 @@ from .page import (
     printed_rows,
 )
 from .reader import TWINS, Reading, Slot, read_printouts
-from .search import FINAL_SPINS, find_scene, scene_name, unseen_digits
+from .search import FINAL_SPINS, find_scenes, scene_name, unseen_digits
 
 MACHINE_READ = 3
 """Misread characters of labels and numbers from which a page counts as read by a machine."""
@@ -71,9 +72,10 @@ def judge(text: str, given: Mapping[str, str] | None = None) -> list[Verificatio
 
 def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
     """Return the verdict on one printout. Parameters as for `judge`."""
-    recovered, missing = find_scene(reading, given)
-    if recovered is None:
+    scenes, missing = find_scenes(reading, given)
+    if not scenes:
         return _without_scene(reading, missing)
+    recovered, *alternatives = scenes
     comparison = Comparison(reading, recovered.fields, recovered.scene, recovered.ending, given)
     findings = comparison.findings()
     verification = Verification(
@@ -88,9 +90,10 @@ def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
     )
     if verification.verdict is not Verdict.DIFFERS:
         return verification
-    from .explain import explained
+    from .explain import explain  # runs the port, which other verdicts do not need
 
-    return explained(verification)
+    others = [alternative.candidate.printed for alternative in alternatives]
+    return replace(verification, explanation=explain(verification, others))
 
 
 def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
@@ -114,10 +117,12 @@ def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
 
 @dataclass
 class Word:
-    """A word or mark of the page: its cells, and the glyphs that were read for them."""
+    """A word or mark of the page: its cells, the glyphs that were read for them, and whether the
+    equals sign of its label, or the heading that it belongs to, was read."""
 
     cells: list[int] = field(default_factory=list)
     glyphs: list[Glyph] = field(default_factory=list)
+    is_marked: bool = False
 
     @property
     def first(self) -> Cell:
@@ -136,10 +141,9 @@ class Word:
 
     @property
     def is_other_label(self) -> bool:
-        """True if another word is in the place of a label's word."""
-        if not self.first.char.isalpha() or self.first.row in PROMPTS or self.read == self.printed:
-            return False
-        if not (self.read.isascii() and self.read.isalpha()):
+        """True if another word is in the place of a label's word, whole and with its "="."""
+        is_word = self.read.isascii() and self.read.isalpha() and self.read != self.printed
+        if not (is_word and self.is_marked and self.first.char.isalpha()):
             return False
         same = sum(a == b for a, b in zip(self.printed, self.read, strict=False))
         return self.read in _WORDS or 2 * same < len(self.printed)
@@ -346,7 +350,7 @@ class Comparison:
                 continue
             words = by_row.setdefault(cell.row, [])
             if cell.first:
-                words.append(Word())
+                words.append(Word(is_marked=self._is_marked(j)))
             words[-1].cells.append(j)
             if j in self.reading.other_labels:
                 words[-1].glyphs = [*self.reading.other_labels[j]]
@@ -357,6 +361,16 @@ class Comparison:
         for pair in ({*PROMPTS}, {*ASTERISKS}):
             lost -= pair if pair <= lost else set()
         return kept, sorted(lost)
+
+    def _is_marked(self, j: int) -> bool:
+        """Return True if the equals sign of the label that has a cell was read."""
+        if CELLS[j].row in PROMPTS:
+            return False
+        if CELLS[j].row == HEADING:
+            return True
+        names = CELLS[j].name
+        equals = [k for k, cell in enumerate(CELLS) if cell.char == "=" and cell.name == names]
+        return any(k in self.reading.chars and self.reading.chars[k].char == "=" for k in equals)
 
     def _repeated_findings(self) -> Iterator[Finding]:
         """Yield the numbers that were printed twice, and the rows that were, or out of order."""
