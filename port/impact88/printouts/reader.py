@@ -279,7 +279,7 @@ class _Reader:
                     self.reading.foreign.append(head)  # behind the heading
                     slot.glyphs = slot.glyphs[len(head) :]
             elif owner not in REPLIES:
-                rest = _join_torn(slot, rest, before.label.row, cells)
+                rest = _join_torn(slot, rest, owner, cells)
         else:
             rest = glyphs
             if owner:
@@ -294,7 +294,7 @@ class _Reader:
         if before.row == HEADING:
             return len(glyphs) if behind.name == "UX" else _end_of_line(glyphs, len(ANGLES))
         if before.row in PROMPTS:
-            is_next = behind.row == before.row + 1
+            is_next = behind.name in ("REPLY_B", "MA") and behind.row == before.row + 1
             return len(glyphs) if is_next or self.reading.ending else _end_of_line(glyphs, 1)
         return _count_number(glyphs) if before.text.endswith("=") else 0
 
@@ -445,13 +445,14 @@ def _count_number(glyphs: Sequence[Glyph]) -> int:
 
 
 def _join_torn(
-    slot: Slot, rest: Sequence[Glyph], row: int, cells: Sequence[int]
+    slot: Slot, rest: Sequence[Glyph], name: str, cells: Sequence[int]
 ) -> Sequence[Glyph]:
-    """Add the words with digits that follow a number to it, if no other number belongs there.
+    """Add the words with digits that follow a number to it, if nothing else belongs there.
 
     Returns what is left.
     """
-    if any(CELLS[j].kind == "slot" and CELLS[j].row == row for j in cells):
+    row = [CELLS[j] for j in cells if CELLS[j].row == ROW_OF[name]]
+    if any(cell.kind == "slot" or cell.name == name for cell in row):
         return rest
     count = 0
     for word in split_at_gaps(rest):

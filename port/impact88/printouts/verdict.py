@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import Glyph
+from .glyphs import Glyph, chars_of
 from .labels import LABELS
 from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
 from .page import (
@@ -289,8 +289,13 @@ class Comparison:
             return Kind.DOUBT
         if slot.is_clean:
             return Kind.UNREAD if self._is_cut(slot, printed) else Kind.NUMBER
-        number = PRINTED.match(read)
-        if number and number[0] == printed and not re.search("[0-9]", read[number.end() :]):
+        if slot.is_torn:  # one stray glyph behind a blank
+            *number, last = slot.glyphs
+            if last.gap and chars_of(number) == printed:
+                return Kind.DOUBT
+        number_match = PRINTED.match(read)
+        rest = read[number_match.end() :] if number_match else read
+        if read.removesuffix(rest) == printed and not re.search("[0-9]", rest):
             return Kind.DOUBT
         foreign = len(_NO_NUMBER.findall(re.sub("[(CI{].?[)}]", "O", read)))
         if foreign <= 1 and printed in readings(read):
