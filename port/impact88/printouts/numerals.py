@@ -21,8 +21,8 @@ TYPED = re.compile(r"[-+]?(?=\.?[0-9])[0-9]*\.?[0-9]*(?:E[-+]?[0-9]{1,2})?")
 RETYPED = re.compile(r"^[-+]?0.|[.][0-9]*0$|^[-+]?[.]00|^[+]|[.]$|^-?[0-9]{10}")
 """Marks of a number that people wrote: a zero or plus sign in front, zeros behind, no exponent."""
 NUMBER_CHARS = "0123456789.-"
-MAX_READINGS = 300
-"""Texts that a damaged number, or the row of angles, may be: the cheapest ones."""
+MAX_READINGS = 100
+"""Texts that a damaged number may be: the cheapest ones."""
 _RADIANS = rounded(divide(decimaltext.number("3.14159265"), decimaltext.number("180")))
 
 

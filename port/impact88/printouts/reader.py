@@ -49,9 +49,9 @@ MAX_ANGLE_GLYPHS = 60
 """Characters of the row of angles that are read."""
 MAX_NUMBER = 16
 """Characters of a damaged angle."""
-MAX_PARTS = 10
+MAX_PARTS = 6
 """Readings of each of the five."""
-MAX_ANGLE_ROWS = 60
+MAX_ANGLE_ROWS = 40
 """Ways to read the row of angles."""
 Way = tuple[float, tuple[str, ...]]
 """The first angles of a row, and their cost."""
@@ -345,6 +345,7 @@ class _Reader:
                 own[last].append(i)
             else:
                 foreign.add(i)
+                last = ""
         slots: dict[str, Slot] = {}
         for name, members in own.items():
             _take_sign(glyphs, members, foreign)

@@ -21,8 +21,8 @@ from .numerals import TYPED, readings, slips, spellings, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, RESULTS
 from .reader import Reading
 
-MAX_CANDIDATES = 10_000
-"""Combinations of readings that are replayed: .1 s."""
+MAX_CANDIDATES = 5_000
+"""Combinations of readings that are replayed: .05 s."""
 MAX_OPTIONS = 40
 """Texts that an input may be."""
 BEST = 3
