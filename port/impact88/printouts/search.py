@@ -127,7 +127,7 @@ def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recove
     for _ in range(BEST):
         if best[0].mismatch < CONTRADICTED:
             break
-        edits = [edit for found in best for edit in _edits(found.candidate, clean)]
+        edits = [*_edits(best[0].candidate, clean)]
         more = replay_candidates(edits, expected)
         if more[0].cost >= best[0].cost:
             break
