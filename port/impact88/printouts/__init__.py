@@ -9,10 +9,12 @@ search    the scene they come from, by exact replay
 verdict   the comparison with that scene's page
 findings  the kinds of findings, and the verdict that follows from them by one table
 explain   what explains a page that differs
+sources   texts and files
 words     verdicts in words and as JSON
 """
 
 from .findings import VERDICTS, Finding, Kind, Number, Verdict, Verification
+from .sources import verify
 from .verdict import judge
 
-__all__ = ["VERDICTS", "Finding", "Kind", "Number", "Verdict", "Verification", "judge"]
+__all__ = ["VERDICTS", "Finding", "Kind", "Number", "Verdict", "Verification", "judge", "verify"]

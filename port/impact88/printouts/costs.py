@@ -20,8 +20,7 @@ BACKWARD = 1.0
 """A label further up the page than the one before it."""
 PASSED = 0.03
 """A label of the page passed over between two that were read."""
-OTHER_LABEL = 1.15
-"""A label in the place of another that does not look like it: between a step back by one row and a
-label printed twice."""
+OTHER_LABEL = 0.9
+"""A label in the place of another that does not look like it: less than a step back."""
 CONTRADICTED = 3.0
 """A result that was read as another than the program prints."""

@@ -85,14 +85,13 @@ def _slip(
         f"line {line}: {finding.name} {finding.read} is a slip, or edited later: everything else "
         f"was computed with {finding.printed}"
     )
-    for printed in alternatives:
-        others = [
-            f"{name} {verification.numbers[name].read} (would be {text})"
-            for name, text in printed.items()
-            if name in verification.numbers and verification.numbers[name].read != text
-        ]
-        sentence += f"; or it is {', '.join(others)}" if others else ""
-    return sentence
+    others = {
+        f"{name} {number.read} (would be {printed[name]})"
+        for printed in alternatives
+        for name, number in verification.numbers.items()
+        if name in printed and printed[name] != number.printed and name != finding.name
+    }
+    return sentence + "".join(f"; or it is {other}" for other in sorted(others))
 
 
 def _causes(verification: Verification) -> Iterator[tuple[str, Mapping[str, str], float]]:

@@ -68,6 +68,8 @@ def _labels_of(row: int) -> Iterator[Label]:
 LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
 LABEL = re.compile("|".join(map(re.escape, _TEXTS)))
+CLOSED = re.compile(r"[-+.E0-9]{1,14}\)")
+"""The number of a label in brackets."""
 WORDS = re.compile("[A-Z]{3}")
 _BACK = -np.subtract.outer(np.arange(len(LABELS)), np.arange(len(LABELS)))
 _STEPS = np.where(_BACK > 0, PASSED * (_BACK - 1), BACKWARD - PASSED * _BACK + ALIKE * (_BACK == 0))
@@ -125,8 +127,9 @@ def _order(
     costs = PASSED * np.arange(len(LABELS))
     ways = []
     own = costs
-    for text, start, _ in labels:
-        is_bracketed = start > 0 and glyphs[start - 1].char == "("
+    chars = chars_of(glyphs)
+    for text, start, stop in labels:
+        is_bracketed = chars[:start].endswith("(") or bool(CLOSED.match(chars, stop))
         own = costs + [_label_cost(label, text, is_bracketed) for label in LABELS]
         steps = own[:, None] + _STEPS
         ways.append(steps.argmin(axis=0))

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import Glyph, chars_of
+from .glyphs import LOOKALIKES, Glyph, chars_of
 from .labels import LABELS
 from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
 from .page import (
@@ -118,11 +118,13 @@ def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
 @dataclass
 class Word:
     """A word or mark of the page: its cells, the glyphs that were read for them, and whether the
-    equals sign of its label, or the heading that it belongs to, was read."""
+    equals sign of its label, or the heading that it belongs to, was read; nothing touches a whole
+    one."""
 
     cells: list[int] = field(default_factory=list)
     glyphs: list[Glyph] = field(default_factory=list)
     is_marked: bool = False
+    is_whole: bool = False
 
     @property
     def first(self) -> Cell:
@@ -141,12 +143,16 @@ class Word:
 
     @property
     def is_other_label(self) -> bool:
-        """True if another word is in the place of a label's word, whole and with its "="."""
+        """True if another word is in the place of a label's word, whole and with its "=".
+
+        It is one of the program's words, or has hardly a letter of the label.
+        """
         is_word = self.read.isascii() and self.read.isalpha() and self.read != self.printed
-        if not (is_word and self.is_marked and self.first.char.isalpha()):
+        if not (is_word and self.is_marked and self.is_whole and self.first.char.isalpha()):
             return False
-        same = sum(a == b for a, b in zip(self.printed, self.read, strict=False))
-        return self.read in _WORDS or 2 * same < len(self.printed)
+        alike = self.printed + "".join(LOOKALIKES.get(char, "") for char in self.printed)
+        shared = sum(char in alike for char in self.read)
+        return self.read in _WORDS or 2 * shared < len(self.printed)
 
     @property
     def misread(self) -> int:
@@ -312,10 +318,11 @@ class Comparison:
     def is_contradiction(self, name: str, slot: Slot, printed: str) -> bool:
         """Return True if a number that was read again is cleanly another.
 
-        One whose label is on two rows is another only if its twin was read, too.
+        One whose label is on two rows is another only if all of its row was read again.
         """
-        has_twin = TWINS.get(name, name) in self.reading.slots
-        return has_twin and slot.is_clean and as_printed(slot.text) != printed
+        row = {other for other in NAMES if ROW_OF[other] == ROW_OF.get(name)}
+        is_sure = name not in TWINS or row <= {other for other, _ in self.reading.repeated}
+        return is_sure and slot.is_clean and as_printed(slot.text) != printed
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
@@ -359,8 +366,10 @@ class Comparison:
             words[-1].cells.append(j)
             if j in self.reading.other_labels:
                 words[-1].glyphs = [*self.reading.other_labels[j]]
+                words[-1].is_whole = True
             elif j in self.reading.chars and words[-1].cells[0] not in self.reading.other_labels:
                 words[-1].glyphs.append(self.reading.chars[j])
+                words[-1].is_whole |= words[-1].glyphs[0].gap > 0
         lost = {row for row, words in by_row.items() if not any(word.glyphs for word in words)}
         kept = [word for row, words in by_row.items() if row not in lost for word in words]
         for pair in ({*PROMPTS}, {*ASTERISKS}):

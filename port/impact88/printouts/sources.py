@@ -1,0 +1,96 @@
+"""Texts and files whose printouts are verified."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from .. import files
+from ..errors import UserError, quoted
+from .findings import Verification
+from .glyphs import decode
+from .verdict import judge
+
+MAX_BYTES = 2_000_000
+"""Bytes of a text: a thousand pages have one million."""
+
+
+def verify(
+    source: str | bytes | os.PathLike[str], given: Mapping[str, str] | None = None
+) -> list[Verification]:
+    """Return for each printout in a text whether it is what the 1988 program prints.
+
+    Parameters
+    ----------
+    source : str, bytes or os.PathLike
+        A text (a str of more than one line), a file's name, or its bytes.
+    given : mapping of str to str, optional
+        Inputs known from elsewhere, as typed, by the scene's names: for a page that has only
+        results.
+
+    Returns
+    -------
+    list of Verification
+        The verdict on each printout, with the scene, the numbers and all that was not read as the
+        program prints it.
+
+    Raises
+    ------
+    UserError
+        For a file that cannot be read or has no printout.
+
+    Notes
+    -----
+    Labels read exactly are anchors, and each owns the number behind it; only what lies between two
+    anchors is aligned. The scene is recovered from the inputs, the listing replayed with it bit for
+    bit, and every character compared.
+
+    Examples
+    --------
+    >>> import impact88
+    >>> page = impact88.run(impact88.sample(1)).page
+    >>> [result.verdict.name for result in impact88.verify(page)]
+    ['IDENTICAL']
+    >>> (result,) = impact88.verify(page.replace("25.15", "25.75"))
+    >>> result.verdict.name, [finding.name for finding in result.findings]
+    ('DIFFERS', ['REPLY_B', 'VY'])
+    """
+    name = "text"
+    if isinstance(source, str) and "\n" in source:
+        text = source
+    elif isinstance(source, str | os.PathLike):
+        name = files.display_name(os.fspath(source))
+        text = read_text(files.read_bytes(os.fspath(source), MAX_BYTES), name)
+    elif isinstance(source, bytes):
+        text = read_text(source, name)
+    else:
+        raise UserError(f"{quoted(source)}: expected a printout's text, a file's name or bytes")
+    if verifications := judge(text, given):
+        return verifications
+    raise UserError(
+        "no printout found; expected labels and numbers such as MA= 143.5 MB= 95.8", name
+    )
+
+
+def read_text(data: bytes, name: str) -> str:
+    """Return the text of a file's bytes.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    name : str
+        Its name in messages.
+
+    Returns
+    -------
+    str
+        The text, in the encoding that leaves the fewest foreign characters.
+
+    Raises
+    ------
+    UserError
+        For a file of another kind than text.
+    """
+    files.check_text(data, name)
+    return decode(data)
