@@ -11,14 +11,14 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, product
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..program.replay import replay
 from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
-from .numerals import TYPED, readings, slips, spellings, stored_and_printed
+from .numerals import TYPED, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, RESULTS
+from .programs import Listing, Outcomes
 from .reader import Reading
 
 MAX_CANDIDATES = 5_000
@@ -27,7 +27,6 @@ MAX_OPTIONS = 40
 """Texts that an input may be."""
 BEST = 3
 """Scenes from which the search for slips goes on, and its rounds."""
-ZERO_DETERMINANT = "ZERO DETERMINANT"
 FINAL_SPINS = ("WAF", "WBF")
 
 Texts = dict[str, str]
@@ -85,7 +84,9 @@ def scene_name(name: str) -> str:
     return "MU" if name == "MUP" else name
 
 
-def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recovered], list[str]]:
+def find_scenes(
+    reading: Reading, given: Mapping[str, str], program: Listing
+) -> tuple[list[Recovered], list[str]]:
     """Return the scene that explains a page at the least cost, and those that do as well.
 
     Parameters
@@ -94,15 +95,21 @@ def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recove
         The page.
     given : mapping of str to str
         Inputs known from elsewhere, as typed, for those that the page lacks.
+    program : Listing
+        The program that may have printed the page.
 
     Returns
     -------
     tuple
         The scenes, none where inputs are missing; and the names of these.
     """
-    columns: Columns = {(name,): _options(reading, name) for name in INPUTS if name not in ANGLES}
+    columns: Columns = {
+        (name,): _options(reading, name, program) for name in INPUTS if name not in ANGLES
+    }
     columns[ANGLES] = [
-        (row, typed, cost) for row, cost in reading.angle_rows if all(typed := _typed_angles(row))
+        (row, typed, cost)
+        for row, cost in reading.angle_rows
+        if all(typed := _typed_angles(row, program))
     ]
     for names, options in columns.items():
         texts = tuple(given.get(scene_name(name), "") for name in names)
@@ -115,11 +122,12 @@ def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recove
     ms = [("6", 0.0), ("4", CONTRADICTED)] if has_spins else [("4", 0.0), ("6", ALIKE)]
     if "M" in given:
         ms = [(given["M"], 0.0)]
-    expected = {name: reading.readings(name) for name in RESULTS}
+    compared = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
+    expected = {name: reading.readings(name) for name in compared}
     first = {names: options[:1] for names, options in columns.items()}
-    best = replay_candidates([*_combinations(first, ms, len(ms))], expected)
+    best = replay_candidates([*_combinations(first, ms, len(ms))], expected, program)
     if best[0].mismatch >= CONTRADICTED:
-        best = replay_candidates([*_combinations(columns, ms, MAX_CANDIDATES)], expected)
+        best = replay_candidates([*_combinations(columns, ms, MAX_CANDIDATES)], expected, program)
     as_read = best[0]
     clean = {
         name: slot.text for name, slot in reading.slots.items() if name in INPUTS and slot.is_clean
@@ -127,8 +135,8 @@ def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recove
     for _ in range(BEST):
         if best[0].mismatch < CONTRADICTED:
             break
-        edits = [*_edits(best[0].candidate, clean)]
-        more = replay_candidates(edits, expected)
+        edits = [*_edits(best[0].candidate, clean, program)]
+        more = replay_candidates(edits, expected, program)
         if more[0].cost >= best[0].cost:
             break
         best = sorted([*best, *more], key=lambda found: found.cost)[:BEST]
@@ -139,11 +147,12 @@ def find_scenes(reading: Reading, given: Mapping[str, str]) -> tuple[list[Recove
     return [scene for scene in best if scene.cost <= limit], []
 
 
-def _typed_angles(row: Sequence[str]) -> tuple[str, ...]:
-    return tuple(next(iter(spellings(text, True)), "") for text in row)
+def _typed_angles(row: Sequence[str], program: Listing) -> tuple[str, ...]:
+    pairs = zip(ANGLES, row, strict=True)
+    return tuple(next(iter(program.spellings(name, text)), "") for name, text in pairs)
 
 
-def _options(reading: Reading, name: str) -> list[Option]:
+def _options(reading: Reading, name: str, program: Listing) -> list[Option]:
     """Return what an input may be, the cheapest first: as printed, and as typed at the prompt."""
     texts = dict(reading.readings(name))
     reply = reading.replies.get(name, "")
@@ -155,7 +164,7 @@ def _options(reading: Reading, name: str) -> list[Option]:
     for text, cost in sorted(texts.items(), key=lambda item: item[1])[:MAX_OPTIONS]:
         if typed and typed[1] == text:
             options.append(((text,), (reply,), cost))
-        elif spelled := spellings(text):
+        elif spelled := program.spellings(name, text):
             options.append(((text,), (spelled[0],), cost))
     return options
 
@@ -179,14 +188,14 @@ def _combinations(
         yield Candidate(printed, typed, ms[m][0], cost)
 
 
-def _edits(candidate: Candidate, clean: Mapping[str, str]) -> Iterator[Candidate]:
+def _edits(candidate: Candidate, clean: Mapping[str, str], program: Listing) -> Iterator[Candidate]:
     """Yield a scene with one input typed otherwise that prints alike, or with one slip in it.
 
     A number that was read cleanly is contradicted by a slip in it.
     """
     printed, typed, m, cost = candidate
     for name, text in printed.items():
-        texts = [*spellings(text, name in ANGLES)]
+        texts = [*program.spellings(name, text)]
         if name == "MUP":  # line 400 turns its sign, and -10 printed of a typed 10 is no pivot
             texts.append(opposite(typed[name]))
         for rank, other in enumerate(texts):
@@ -198,7 +207,9 @@ def _edits(candidate: Candidate, clean: Mapping[str, str]) -> Iterator[Candidate
 
 
 def replay_candidates(
-    candidates: Sequence[Candidate], expected: Mapping[str, Mapping[str, float]]
+    candidates: Sequence[Candidate],
+    expected: Mapping[str, Mapping[str, float]],
+    program: Listing,
 ) -> list[Recovered]:
     """Return the best candidates, replayed, the cheapest first.
 
@@ -208,6 +219,8 @@ def replay_candidates(
         Scenes.
     expected : mapping of str to mapping of str to float
         What each result may be, and the cost of each; an empty one for a result not read.
+    program : Listing
+        The program.
     """
     columns = {
         name: [candidate.typed[name] for candidate in candidates]
@@ -217,11 +230,11 @@ def replay_candidates(
     columns["M"] = [candidate.M for candidate in candidates]
     mu = np.array([candidate.typed["MUP"] for candidate in candidates], dtype="U40")
     wanted = np.array([candidate.printed["MUP"] for candidate in candidates])
-    run = replay({**columns, "MU": mu.tolist()})
+    run = program.run({**columns, "MU": mu.tolist()})
     turned = (run.printed("MUP") != wanted) & (wanted != "0") & (run.printed("MUP") != "")
     if turned.any():
         mu[turned] = [opposite(text) for text in mu[turned].tolist()]
-        run = replay({**columns, "MU": mu.tolist()})
+        run = program.run({**columns, "MU": mu.tolist()})
     mismatch = CONTRADICTED * ((run.printed("MUP") != wanted) & (run.printed("MUP") != ""))
     for name, costs in expected.items():
         texts, back = np.unique(run.printed(name), return_inverse=True)
@@ -240,28 +253,31 @@ def _result_cost(text: str, costs: Mapping[str, float]) -> float:
     return LOST if text else 0.0
 
 
-def _recovered(candidate: Candidate, mismatch: float, mu: str, run: Any, k: int) -> Recovered:
-    texts = zip(NAMES, run.fields[k].astype(str).tolist(), strict=True)
+def _recovered(
+    candidate: Candidate, mismatch: float, mu: str, outcomes: Outcomes, k: int
+) -> Recovered:
+    texts = zip(NAMES, outcomes.fields[k].tolist(), strict=True)
     fields = {name: text for name, text in texts if text}
     scene = {name: candidate.typed[name] for name in INPUTS if name != "MUP"}
     scene |= {"MU": mu, "M": candidate.M}
-    ending = ZERO_DETERMINANT if run.zero_determinant[k] else str(run.error[k])
-    return Recovered(candidate, mismatch, scene, fields, ending)
+    return Recovered(candidate, mismatch, scene, fields, outcomes.endings[k])
 
 
 def printed_fields(scene: Mapping[str, str]) -> Texts:
     """Return the numbers that the program prints for a scene, by name."""
-    run = replay({name: [text] for name, text in scene.items()})
-    return {name: text for name in NAMES if (text := str(run.printed(name)[0]))}
+    texts = Listing().run({name: [text] for name, text in scene.items()}).fields[0].tolist()
+    return {name: text for name, text in zip(NAMES, texts, strict=True) if text}
 
 
-def unseen_digits(recovered: Recovered) -> dict[str, int]:
+def unseen_digits(recovered: Recovered, program: Listing) -> dict[str, int]:
     """Return the number of digits of each input that nothing else on the page confirms.
 
     Parameters
     ----------
     recovered : Recovered
         The scene of the page.
+    program : Listing
+        The program.
 
     Returns
     -------
@@ -277,6 +293,6 @@ def unseen_digits(recovered: Recovered) -> dict[str, int]:
                 other = text[:k] + str((int(char) + 1) % 10) + text[k + 1 :]
                 names.append(name)
                 scenes.append({**recovered.scene, name: other})
-    run = replay({name: [scene[name] for scene in scenes] for name in recovered.scene})
+    run = program.run({name: [scene[name] for scene in scenes] for name in recovered.scene})
     same = np.all([run.printed(n) == recovered.fields.get(n, "") for n in RESULTS], axis=0)
     return dict(Counter(name for name, is_same in zip(names, same, strict=True) if is_same))

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 
 from .. import files
 from ..errors import UserError, quoted
+from ..program.copies import ListingCopy
 from .findings import Verification
 from .glyphs import decode
+from .programs import CopyListing
 from .verdict import judge
 
 MAX_BYTES = 2_000_000
@@ -16,7 +18,9 @@ MAX_BYTES = 2_000_000
 
 
 def verify(
-    source: str | bytes | os.PathLike[str], given: Mapping[str, str] | None = None
+    source: str | bytes | os.PathLike[str],
+    given: Mapping[str, str] | None = None,
+    listing: str | os.PathLike[str] | None = None,
 ) -> list[Verification]:
     """Return for each printout in a text whether it is what the 1988 program prints.
 
@@ -27,6 +31,8 @@ def verify(
     given : mapping of str to str, optional
         Inputs known from elsewhere, as typed, by the scene's names: for a page that has only
         results.
+    listing : str or os.PathLike, optional
+        A file with an office's own copy of the listing, which may have printed the page.
 
     Returns
     -------
@@ -65,7 +71,8 @@ def verify(
         text = read_text(source, name)
     else:
         raise UserError(f"{quoted(source)}: expected a printout's text, a file's name or bytes")
-    if verifications := judge(text, given):
+    program = CopyListing(ListingCopy(os.fspath(listing))) if listing is not None else None
+    if verifications := judge(text, given, program):
         return verifications
     raise UserError(
         "no printout found; expected labels and numbers such as MA= 143.5 MB= 95.8", name

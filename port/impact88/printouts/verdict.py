@@ -29,6 +29,7 @@ from .page import (
     print_page,
     printed_rows,
 )
+from .programs import Listing
 from .reader import TWINS, Reading, Slot, read_printouts
 from .search import FINAL_SPINS, find_scenes, scene_name, unseen_digits
 
@@ -46,7 +47,9 @@ _NO_NUMBER = re.compile("[^-0-9.E,+]")
 _WORDS = frozenset(re.findall("[A-Z]+", " ".join(label.text for label in LABELS if label.row > 1)))
 
 
-def judge(text: str, given: Mapping[str, str] | None = None) -> list[Verification]:
+def judge(
+    text: str, given: Mapping[str, str] | None = None, program: Listing | None = None
+) -> list[Verification]:
     """Return the verdict on each printout in a text.
 
     Parameters
@@ -55,6 +58,8 @@ def judge(text: str, given: Mapping[str, str] | None = None) -> list[Verificatio
         Any text.
     given : mapping of str to str, optional
         Inputs known from elsewhere, as typed, for a page that has only results.
+    program : Listing, optional
+        The program that may have printed it, by default the restored listing.
 
     Returns
     -------
@@ -67,23 +72,28 @@ def judge(text: str, given: Mapping[str, str] | None = None) -> list[Verificatio
     >>> judge(impact88.run(impact88.sample(1)).page)[0].verdict
     <Verdict.IDENTICAL: 'identical'>
     """
-    return [judge_reading(reading, given or {}) for reading in read_printouts(text)]
+    program = program or Listing()
+    return [judge_reading(reading, given or {}, program) for reading in read_printouts(text)]
 
 
-def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
+def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) -> Verification:
     """Return the verdict on one printout. Parameters as for `judge`."""
-    scenes, missing = find_scenes(reading, given)
+    scenes, missing = find_scenes(reading, given, program)
     if not scenes:
         return _without_scene(reading, missing)
     recovered, *alternatives = scenes
     comparison = Comparison(reading, recovered.fields, recovered.scene, recovered.ending, given)
     findings = comparison.findings()
+    if layout := program.layout(recovered.scene):
+        own = Comparison(layout, recovered.fields, recovered.scene, recovered.ending, {})
+        expected = {_without_place(finding) for finding in own.findings()}
+        findings = [finding for finding in findings if _without_place(finding) not in expected]
     verification = Verification(
         verdict_of(findings),
         recovered.scene,
         comparison.numbers,
         tuple(findings),
-        unseen_digits(recovered),
+        unseen_digits(recovered, program),
         page=tuple(print_page(recovered.fields, comparison.typed_replies())),
         text=reading.text,
         span=reading.span(),
@@ -94,6 +104,11 @@ def judge_reading(reading: Reading, given: Mapping[str, str]) -> Verification:
 
     others = [alternative.candidate.printed for alternative in alternatives]
     return replace(verification, explanation=explain(verification, others))
+
+
+def _without_place(finding: Finding) -> tuple[Kind, str, str]:
+    """Return what a finding is, wherever it is."""
+    return finding.kind, finding.name, "".join(finding.read.upper().split())
 
 
 def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
@@ -194,6 +209,7 @@ class Comparison:
         names = [name for name in NAMES if name in fields or name in reading.slots]
         if given:  # of a page with results only
             names = [name for name in names if name in reading.slots or self._is_due(name, given)]
+            self.lost_rows = []
         self.numbers = {name: self._number(name) for name in names}
         damaged = [name for name in names if _NO_NUMBER.search(reading_text(reading, name))]
         self.noise = len(damaged) + sum(word.misread for word in self.words)
