@@ -56,7 +56,7 @@ html_css_files = ["wide.css"]
 
 CONSTRUCTED = [
     f"impact88.{name}"
-    for name in "Applesoft Prepared Reconstructions Scene Uncertain Verifications".split()
+    for name in "Applesoft Prepared Reconstructions Scene Uncertain".split()
 ]
 """Classes that are called. Others are returned: their parameters are shown as attributes."""
 

@@ -11,9 +11,8 @@ The 1988 program
     Applesoft           the machine itself, for any Applesoft program
 
 Old printouts and other programs
-    verify, Verification, Verifications
+    verify, Verification
                         check a printout against the program's own, and explain differences
-    read_printouts, Printout    the printouts in a text, number by number
     oracle              complete reference results of scenes, to check other programs with
     compare, Comparison, Cause      another program's table compared with the reference
 
@@ -66,11 +65,8 @@ if TYPE_CHECKING:
     from .mechanics.solve import evaluate as evaluate
     from .mechanics.solve import prepared as prepared
     from .mechanics.solve import solve as solve
-    from .printouts.reading.printout import Printout as Printout
-    from .printouts.reading.printout import read_printouts as read_printouts
-    from .printouts.reporting.examination import Verification as Verification
-    from .printouts.reporting.examination import Verifications as Verifications
-    from .printouts.reporting.examination import verify as verify
+    from .printouts.findings import Verification as Verification
+    from .printouts.sources import verify as verify
     from .program.replay import Replay as Replay
     from .program.replay import replay as replay
     from .program.run import Run as Run
@@ -101,12 +97,12 @@ _LAZY = {
         "library": "accelerated",
         "mechanics.solve": "Prepared evaluate prepared solve",
         "program.run": "Run run",
-        "printouts.reading.printout": "Printout read_printouts",
+        "printouts.findings": "Verification",
         "reconstruction.answer": "Reconstruction reconstruct",
         "reconstruction.bounds": "Bounds bounds",
         "reconstruction.unknowns": "Solution solve_for",
         "program.replay": "Replay replay",
-        "printouts.reporting.examination": "Verification Verifications verify",
+        "printouts.sources": "verify",
         "collision.casescene": "Scene sample",
         "tables.frames": "solve_frame",
     }.items()

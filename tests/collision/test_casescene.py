@@ -6,12 +6,12 @@ import pytest
 from guide import guide
 
 from impact88.casework.figures.scenegeometry import plan
+from impact88.collision.casescene import Scene, published_data, sample
 from impact88.collision.scenefile import SIGNS, template
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import SCENE
-from impact88.collision.casescene import Scene, published_data, sample
 
 COMPLETE = sample(1).to_toml()
 

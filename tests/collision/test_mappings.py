@@ -98,14 +98,12 @@ def test_units_are_read_as_in_a_file(door: str) -> None:
         assert impact88.scene_svg(US).startswith("<svg")
 
 
-def test_verify_takes_a_text_a_file_bytes_and_a_printout(tmp_path: Path) -> None:
+def test_verify_takes_a_text_a_file_and_bytes(tmp_path: Path) -> None:
     page = impact88.run(impact88.sample(1)).page
     path = tmp_path / "page.txt"
     path.write_text(page, encoding="utf-8")
-    (printout,) = impact88.read_printouts(page)
     for given in (page, str(path), path, page.encode()):
         assert [found.verdict.name for found in impact88.verify(given)] == ["IDENTICAL"]
-    assert impact88.verify(printout).verdict.name == "IDENTICAL"
     results = page[page.index(" E=") :]
     apart = {**NUMBERS, "UX": "-29.04"}
     assert [found.scene["MA"] for found in impact88.verify(results, apart)] == ["143.5"]
@@ -151,7 +149,7 @@ THINGS: list[Any] = [None, 7, b"\xff", [], [1], {}, {1: 2}, {"MA": []}, object()
 FUNCTIONS = (
     "solve run bounds reconstruct oracle replay compare verify sample solve_frame solve_for "
 )
-FUNCTIONS += "read_printouts scene_svg barrier colinear colinear_inverse delta_v Scene prepared"
+FUNCTIONS += "scene_svg barrier colinear colinear_inverse delta_v Scene prepared"
 
 
 @pytest.mark.parametrize("call", UNUSABLE, ids=range(len(UNUSABLE)))

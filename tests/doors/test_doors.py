@@ -14,8 +14,8 @@ import pytest
 from longer import long_but
 
 import impact88
-from impact88.interface.commands.cli import main
 from impact88.bench.populations import BENCHMARK, scenes
+from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.columns import UNUSED_BY_POINTS
 from impact88.names import RESULTS, SCENE
 from impact88.tables import csvtable

@@ -30,7 +30,6 @@ GOOD: dict[str, Any] = {
     "verify": "x\n",
     "sample": 1,
     "solve_frame": [dict(NUMBERS)],
-    "read_printouts": "x\n",
     "scene_svg": SCENE,
     "solve_for": KNOWN,
     "barrier": CAR,

@@ -2,31 +2,316 @@
 
 from __future__ import annotations
 
+import json
 import random
+import re
+from collections.abc import Callable
+from pathlib import Path
 
 import captures
 import pytest
+from captures import ROOT
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from impact88.printouts import Kind, Verdict, judge
-from impact88.program.run import run
-from impact88.program.scene import sample
+import impact88
+from impact88.errors import UserError
+from impact88.printouts import VERDICTS, Kind, Verdict, Verification, judge, verify, words
+from impact88.printouts.words import SENTENCES, verdict_table
+
+PAGE = impact88.run(impact88.sample(1)).page
+BODY = PAGE[PAGE.index("MA=") :]
+PAIR = re.compile(r"\(?(?:INITIAL KE|KE LOSS|[A-Z]+)= ?-?[0-9.]+(?:E[-+]\d\d)?\)?(?: %)?")
+LISTING = (ROOT / "legacy" / "impact.bas").read_text(encoding="utf-8")
+
+
+def single(text: str) -> Verification:
+    (verification,) = judge(text)
+    return verification
+
+
+def kinds(text: str) -> set[Kind]:
+    return {finding.kind for finding in single(text).findings}
+
+
+def with_row(start: str, *rows: str) -> str:
+    """Return the page with other rows in place of the one that starts so."""
+    lines = PAGE.split("\n")
+    at = next(k for k, line in enumerate(lines) if line.strip().startswith(start))
+    return "\n".join([*lines[:at], *rows, *lines[at + 1 :]])
+
+
+def row(start: str) -> str:
+    return next(line for line in PAGE.split("\n") if line.strip().startswith(start))
+
+
+# --- what the real machine printed ----------------------------------------------------------------
 
 
 @pytest.mark.captures
-def test_captures_are_identical() -> None:
-    rows = [row for row in captures.scenes() if "MA= " in row["printout"]]
-    for row in random.Random(1).sample(rows, 60):
-        (verification,) = judge(row["printout"])
-        assert verification.verdict is Verdict.IDENTICAL, verification.findings
+def test_captures_are_identical_as_printed_and_on_an_apples_screen() -> None:
+    rows = [item for item in captures.scenes() if "MA= " in item["printout"]]
+    for item in random.Random(1).sample(rows, 40):
+        lines = item["printout"].split("\n")
+        screen = [line[k : k + 40] for line in lines for k in range(0, max(1, len(line)), 40)]
+        for text in (item["printout"], "\n".join(screen)):
+            assert single(text).verdict is Verdict.IDENTICAL, text
+
+
+@pytest.mark.captures
+def test_a_page_that_ends_before_its_first_number_is_incomplete() -> None:
+    rows = [item for item in captures.scenes() if "MA= " not in item["printout"]]
+    for item in rows[:10]:
+        assert single(item["printout"]).verdict is Verdict.INCOMPLETE
+
+
+# --- layouts of genuine pages ---------------------------------------------------------------------
+
+LAYOUTS: dict[str, Callable[[str], str | bytes]] = {
+    "quoted": lambda page: "\n".join("> " + line for line in page.split("\n")),
+    "numbered": lambda page: "\n".join(f"{k}: {x}" for k, x in enumerate(page.split("\n"), 1)),
+    "stamped": lambda page: "\n".join(
+        f"[14:{k // 60:02}:{k % 60:02}] {x}" for k, x in enumerate(page.split("\n"))
+    ),
+    "small letters": str.lower,
+    "CRLF": lambda page: page.replace("\n", "\r\n"),
+    "page break": lambda page: page.replace("VX=", "\fVX="),
+    "dashes": lambda page: page.replace("-", "−"),
+    "no blank lines": lambda page: re.sub(r"\n\n+", "\n", page),
+    "without prompts": lambda page: page[page.index("MA=") :],
+    "without asterisks": lambda page: page.replace("*****", ""),
+    "in a letter": lambda page: f"Dear Sir,\nthis is run 7:\n\n{page}\n\nYours\n",
+    "UTF-16": lambda page: page.encode("utf-16"),
+    "Windows": lambda page: page.replace("-", "–").encode("cp1252"),
+    "EBCDIC": lambda page: page.encode("cp037"),
+    "high bit": lambda page: bytes(code | 0x80 for code in page.encode("ascii")),
+    "printer slot": lambda page: page.replace("MA= 1", "\x04PR# 1\nMA= 1", 1),
+}
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_layouts_of_genuine_pages_are_identical(name: str) -> None:
+    text = LAYOUTS[name](PAGE)
+    (verification,) = verify(text if isinstance(text, bytes) else text.encode())
+    assert verification.verdict is Verdict.IDENTICAL, verification.findings
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        PAGE.replace("VX=", "MAY 11 88 14:22 BROWN & PARTNERS P.03\nVX=", 1),
+        BODY.replace(".", ","),
+        PAGE.replace(" .911", " 0.911"),
+        PAGE.replace("XA= -29.04", "XA= ~29.04"),
+        PAGE.replace("MU=", "NU="),
+        with_row("DA=", row("DA="), row("DA=")),
+    ],
+    ids=["fax line", "decimal commas", "zero", "misread sign", "misread label", "row twice"],
+)
+def test_what_is_not_exact_is_listed(text: str) -> None:
+    verification = single(text)
+    assert verification.verdict is Verdict.AS_READ
+    assert verification.findings
+
+
+# --- alterations ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["MA", "IB", "PB", "UX", "EM", "YB", "KI", "LOSS", "VBY", "WAF"])
+def test_one_altered_digit_differs_and_is_named_alone(name: str) -> None:
+    number = single(PAGE).numbers[name]
+    at = number.start + max(k for k, char in enumerate(number.read) if char.isdigit())
+    altered = PAGE[:at] + str((int(PAGE[at]) + 4) % 10) + PAGE[at + 1 :]
+    verification = single(altered)
+    assert verification.verdict is Verdict.DIFFERS
+    (finding,) = verification.findings
+    assert (finding.kind, finding.name, finding.printed) == (Kind.NUMBER, name, number.read)
+    assert finding.start <= at < finding.stop
+    assert verification.explanation.count(finding.read) == 1
 
 
 @pytest.mark.parametrize("number", [1, 2, 3])
-def test_one_altered_digit_differs(number: int) -> None:
-    page = run(sample(number)).page
-    at = page.index("VBY= ") + 6
-    altered = page[:at] + str((int(page[at]) + 5) % 10) + page[at + 1 :]
-    (verification,) = judge(altered)
+def test_lost_numbers_never_differ_and_never_are_identical(number: int) -> None:
+    page = impact88.run(impact88.sample(number)).page
+    spans = [match.span() for match in PAIR.finditer(page) if match.start() >= page.index("MA=")]
+    for count in (1, 2, 3):
+        for k in range(0, len(spans) - count + 1, 2):
+            text = page[: spans[k][0]] + page[spans[k + count - 1][1] :]
+            for verification in judge(text):
+                assert verification.verdict in (Verdict.INCOMPLETE, Verdict.AS_READ), text
+
+
+def test_a_lost_angle_is_missing() -> None:
+    angles = row("-19.8").split()
+    for k in range(5):
+        text = with_row("-19.8", "  ".join(angles[:k] + angles[k + 1 :]))
+        assert single(text).verdict is Verdict.INCOMPLETE
+
+
+@pytest.mark.parametrize("start", ["MA=", "DA=", "UX=", "E=", "VAX=", "WA="])
+def test_a_row_lost_or_twice_is_named(start: str) -> None:
+    lost = single(with_row(start))
+    assert any(f.kind is Kind.ROW_LOST and start[:-1] in f.name for f in lost.findings)
+    assert lost.verdict is Verdict.INCOMPLETE
+    twice = single(with_row(start, row(start), row(start)))
+    assert twice.verdict is Verdict.AS_READ
+    assert [f.kind for f in twice.findings] == [Kind.ROW_TWICE]
+    other = re.sub(r"[1-8](?!.*[1-8])", "9", row(start))
+    assert single(with_row(start, row(start), other)).verdict is Verdict.DIFFERS
+
+
+def test_rows_in_each_others_place_are_named() -> None:
+    text = with_row("DA=", row("UX=")).replace(row("UX="), "#", 2)
+    text = text.replace("#", row("UX="), 1).replace("#", row("DA="))
+    assert Kind.DISORDER in kinds(text)
+
+
+@pytest.mark.parametrize(
+    ("label", "other"), [("MB", "MA"), ("IB", "IA"), ("VX", "VAX"), ("YB", "YA"), ("EM", "MU")]
+)
+def test_another_label_differs(label: str, other: str) -> None:
+    verification = single(BODY.replace(f"{label}=", f"{other}=", 1))
     assert verification.verdict is Verdict.DIFFERS
-    (finding,) = verification.findings
-    assert (finding.kind, finding.name) == (Kind.NUMBER, "VBY")
-    assert finding.start <= at < finding.stop
+    assert Kind.LABEL in {finding.kind for finding in verification.findings}
+
+
+# --- both sides of the constants that decide a verdict --------------------------------------------
+
+MISREAD = {"DA": "0A", "IB": "1B", "UX": "U%", "EM": "E#", "MU": "N0", "VY": "V¥"}
+
+
+def misread(text: str, count: int) -> str:
+    """Return a page with some labels as a machine misreads them."""
+    for label, read in [*MISREAD.items()][:count]:
+        text = text.replace(f"{label}=", f"{read}=", 1)
+    return text
+
+
+def test_from_three_misread_characters_on_a_lost_digit_is_the_readers() -> None:
+    text = BODY.replace("VBY= 19.982", "VBY= 19.92")
+    assert single(text).verdict is Verdict.DIFFERS
+    digits = BODY.replace("IB=", "1B=").replace("DA=", "0A=").replace("XB=", "X8=", 1)
+    digits = digits.replace("IA=", "1A=").replace("MB=", "M8=").replace("DB=", "D8=")
+    assert single(digits.replace("VBY= 19.982", "VBY= 19.92")).verdict is Verdict.AS_READ
+    assert single(digits.replace("VBY= 19.982", "VBY= 19.952")).verdict is Verdict.DIFFERS
+
+
+def test_the_same_misreading_twice_is_the_readers() -> None:
+    digits = BODY.replace("IB=", "1B=").replace("DA=", "0A=").replace("XB=", "X8=", 1)
+    digits = digits.replace("IA=", "1A=").replace("MB=", "M8=").replace("DB=", "D8=")
+    once = digits.replace("15.91", "16.91")
+    twice = once.replace("VAY= 3.449", "VAY= 3.449").replace("17.35)", "17.36)")
+    assert single(once).verdict is Verdict.DIFFERS
+    assert single(twice.replace("17.36)", "17.36)")).verdict is Verdict.DIFFERS
+    same = digits.replace("57.47", "67.47").replace("15.91", "16.91")
+    assert single(same).verdict is not Verdict.DIFFERS
+
+
+def test_three_numbers_make_a_printout() -> None:
+    assert judge("MA= 1 MB= 2 IA= 3\n")
+    assert not judge("MA= 1 MB= 2\n")
+
+
+def test_a_row_further_up_begins_another_printout() -> None:
+    assert len(judge(BODY + "\n" + BODY)) == 2
+    assert len(judge(with_row("UX=", row("UX="), row("DA=")))) == 1
+
+
+def test_a_number_cut_at_the_end_of_its_line_is_not_read() -> None:
+    assert single(BODY.replace("XB= 14.51 YB= 25.14", "XB= 14.51 YB= 25.1")).verdict is (
+        Verdict.INCOMPLETE
+    )
+    assert single(BODY.replace("XB= 14.51", "XB= 14.5")).verdict is Verdict.DIFFERS
+
+
+def test_the_verdict_is_the_gravest_of_the_table() -> None:
+    assert set(VERDICTS) == set(Kind) == set(SENTENCES)
+    for text in (PAGE, BODY.replace("DA=", "0A="), BODY.replace("3.449", ""), with_row("VAX=")):
+        verification = single(text)
+        verdicts = [VERDICTS[finding.kind] for finding in verification.findings]
+        assert verification.verdict is min([*verdicts, Verdict.IDENTICAL], key=[*Verdict].index)
+
+
+def test_the_guide_has_the_table_of_the_code() -> None:
+    guide = ROOT / "port" / "docs" / "guide" / "verify-method.md"
+    assert verdict_table() in guide.read_text(encoding="utf-8")
+
+
+# --- properties -----------------------------------------------------------------------------------
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, len(BODY) - 1), st.sampled_from("0123456789.-AEKX=~ "), st.booleans())
+def test_findings_quote_the_page(at: int, char: str, is_added: bool) -> None:
+    text = BODY[:at] + char + BODY[at + (not is_added) :]
+    for verification in judge(text):
+        for finding in verification.findings:
+            assert finding.read == text[finding.start : finding.stop] or not finding.read
+        for name, number in verification.numbers.items():
+            assert number.read in text, name
+        if verification.verdict is Verdict.IDENTICAL:
+            again = impact88.run(verification.scene).page
+            assert "".join(again.split())[-300:] == "".join(text.upper().split())[-300:]
+
+
+# --- given inputs, copies, explanations, words ----------------------------------------------------
+
+
+def test_results_alone_go_with_given_inputs() -> None:
+    results = BODY[BODY.index("INITIAL") :]
+    assert single(results).verdict is Verdict.INCOMPLETE
+    (verification,) = verify(results, impact88.sample(1))
+    assert verification.verdict in (Verdict.IDENTICAL, Verdict.AS_READ)
+    (other,) = verify(results, {**impact88.sample(1), "MA": "150"})
+    assert other.verdict is Verdict.DIFFERS
+
+
+def test_a_page_of_an_offices_copy_is_identical_to_what_the_copy_prints(tmp_path: Path) -> None:
+    path = tmp_path / "office.bas"
+    path.write_text(LISTING.replace("3.14159265", "3.1416"), encoding="utf-8")
+    from impact88.program.copies import ListingCopy
+
+    page = ListingCopy(str(path)).run(impact88.sample(1)).page
+    assert [v.verdict for v in verify(page, listing=path)] == [Verdict.IDENTICAL]
+    assert [v.verdict for v in verify(page)] == [Verdict.DIFFERS]
+    altered = page.replace("VBY= 1", "VBY= 2")
+    assert [v.verdict for v in verify(altered, listing=path)] == [Verdict.DIFFERS]
+
+
+def results_of(other: str) -> str:
+    """Return the page with the results of another one."""
+    return BODY[: BODY.index("*****")] + other[other.index("*****") :]
+
+
+def test_explanations_name_the_cause() -> None:
+    scene = dict(impact88.sample(1))
+    m4 = results_of(impact88.run({**scene, "M": "4"}).page)
+    turned = results_of(impact88.run({**scene, "MU": "-.911"}).page)
+    double = impact88.run(impact88.sample(2), "float64").page
+    assert "M = 4" in single(m4.rstrip() + "\n").explanation
+    assert "sign of MU" in single(turned).explanation
+    verification = single(double)
+    assert verification.verdict is Verdict.IDENTICAL or verification.explanation
+
+
+def test_words_and_json() -> None:
+    altered = single(PAGE.replace("3.449", "3.549"))
+    text = "\n".join(words.write(altered, "case.txt", 2, brief=True))
+    assert text.startswith("case.txt, printout 2 (line 2): DIFFERS")
+    assert "VAY '3.549': the program prints 3.449" in text
+    assert "scene as typed" in "\n".join(words.write(altered))
+    answer = json.loads(json.dumps(words.record(altered, "case.txt")))
+    assert answer["schema"] == "impact88/verify/4"
+    assert answer["findings"][0]["kind"] == "number"
+    assert PAGE[slice(*[answer["findings"][0][key] for key in ("start", "stop")])] == "3.449"
+
+
+def test_what_is_no_printout_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="no printout"):
+        verify("Dear Sir,\nnothing here\n")
+    with pytest.raises(UserError):
+        verify(tmp_path / "none.txt")
+    picture = tmp_path / "page.png"
+    picture.write_bytes(b"\x89PNG\r\n\x1a\n")
+    with pytest.raises(UserError):
+        verify(picture)

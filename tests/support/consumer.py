@@ -38,7 +38,7 @@ def replayed() -> str:
 
 def judged(text: str) -> list[str]:
     """The verdict on every printout in a text."""
-    return [impact88.verify(shown).verdict.name for shown in impact88.read_printouts(text)]
+    return [found.verdict.name for found in impact88.verify(text)]
 
 
 def solved_for() -> list[str]:

@@ -127,6 +127,12 @@ class Verification:
     text: str = field(default="", repr=False)
     span: tuple[int, int] = (0, 0)
 
+    def __repr__(self) -> str:
+        return (
+            f"<Verification: {self.verdict.value}, {len(self.numbers)} numbers, "
+            f"{len(self.findings)} findings>"
+        )
+
     def line_of(self, offset: int) -> int:
         """Return the number of the line of an offset, from 1."""
         return len(re.findall("\r\n?|\n", self.text[:offset])) + 1

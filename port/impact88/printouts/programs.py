@@ -91,7 +91,7 @@ class CopyListing(Listing):
         rows = []
         for page in pages:
             match = next(filter(None, (layout.search(page) for layout in self._layouts)), None)
-            texts = match.groupdict() if match else _texts(page)
+            texts = match.groupdict() if match else {}
             rows.append([texts.get(name) or "" for name in NAMES])
         endings = [ending[0] if (ending := ENDING.search(page)) else "" for page in pages]
         return Outcomes(np.array(rows), endings)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from typing import Any
 
 from .. import files
+from ..decimals import to_text
 from ..errors import UserError, quoted
+from ..names import SCENE, check_names
 from ..program.copies import ListingCopy
 from .findings import Verification
 from .glyphs import decode
+from .numerals import TYPED
 from .programs import CopyListing
 from .verdict import judge
 
@@ -19,7 +23,7 @@ MAX_BYTES = 2_000_000
 
 def verify(
     source: str | bytes | os.PathLike[str],
-    given: Mapping[str, str] | None = None,
+    given: Mapping[str, Any] | None = None,
     listing: str | os.PathLike[str] | None = None,
 ) -> list[Verification]:
     """Return for each printout in a text whether it is what the 1988 program prints.
@@ -28,7 +32,7 @@ def verify(
     ----------
     source : str, bytes or os.PathLike
         A text (a str of more than one line), a file's name, or its bytes.
-    given : mapping of str to str, optional
+    given : mapping of str to str or float, optional
         Inputs known from elsewhere, as typed, by the scene's names: for a page that has only
         results.
     listing : str or os.PathLike, optional
@@ -71,12 +75,34 @@ def verify(
         text = read_text(source, name)
     else:
         raise UserError(f"{quoted(source)}: expected a printout's text, a file's name or bytes")
-    program = CopyListing(ListingCopy(os.fspath(listing))) if listing is not None else None
-    if verifications := judge(text, given, program):
+    program = None
+    if isinstance(listing, str | os.PathLike):
+        program = CopyListing(ListingCopy(os.fspath(listing)))
+    elif listing is not None:
+        raise UserError(f"{quoted(listing)}: expected the name of a file with a listing")
+    if verifications := judge(text, _texts(given), program):
         return verifications
     raise UserError(
         "no printout found; expected labels and numbers such as MA= 143.5 MB= 95.8", name
     )
+
+
+def _texts(given: Mapping[str, Any] | None) -> dict[str, str]:
+    """Return given inputs as typed. Raises UserError."""
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise UserError(f"{quoted(given)}: expected inputs by name")
+    check_names(given, SCENE, "value of a scene")
+    texts = {}
+    for name, value in given.items():
+        try:
+            texts[name] = value.replace(" ", "") if isinstance(value, str) else to_text(value)
+        except (TypeError, ValueError, AttributeError):
+            texts[name] = ""
+        if not TYPED.fullmatch(texts[name]):
+            raise UserError(f"{quoted(value)} is not a number as typed", name)
+    return texts
 
 
 def read_text(data: bytes, name: str) -> str:
