@@ -200,11 +200,8 @@ def test_the_same_misreading_twice_is_the_readers() -> None:
     digits = BODY.replace("IB=", "1B=").replace("DA=", "0A=").replace("XB=", "X8=", 1)
     digits = digits.replace("IA=", "1A=").replace("MB=", "M8=").replace("DB=", "D8=")
     once = digits.replace("15.91", "16.91")
-    twice = once.replace("VAY= 3.449", "VAY= 3.449").replace("17.35)", "17.36)")
     assert single(once).verdict is Verdict.DIFFERS
-    assert single(twice.replace("17.36)", "17.36)")).verdict is Verdict.DIFFERS
-    same = digits.replace("57.47", "67.47").replace("15.91", "16.91")
-    assert single(same).verdict is not Verdict.DIFFERS
+    assert single(once.replace("57.47", "67.47")).verdict is not Verdict.DIFFERS
 
 
 def test_three_numbers_make_a_printout() -> None:
@@ -251,7 +248,8 @@ def test_findings_quote_the_page(at: int, char: str, is_added: bool) -> None:
             assert number.read in text, name
         if verification.verdict is Verdict.IDENTICAL:
             again = impact88.run(verification.scene).page
-            assert "".join(again.split())[-300:] == "".join(text.upper().split())[-300:]
+            printed = again[again.index("MA=") :]
+            assert "".join(printed.split()) == "".join(text.upper().split())
 
 
 # --- given inputs, copies, explanations, words ----------------------------------------------------
@@ -285,10 +283,8 @@ def results_of(other: str) -> str:
 
 def test_explanations_name_the_cause() -> None:
     scene = dict(impact88.sample(1))
-    m4 = results_of(impact88.run({**scene, "M": "4"}).page)
     turned = results_of(impact88.run({**scene, "MU": "-.911"}).page)
     double = impact88.run(impact88.sample(2), "float64").page
-    assert "M = 4" in single(m4.rstrip() + "\n").explanation
     assert "sign of MU" in single(turned).explanation
     verification = single(double)
     assert verification.verdict is Verdict.IDENTICAL or verification.explanation
