@@ -69,7 +69,10 @@ class Aligner:
         self.starts = np.array(starts, np.int64)
         self.lost = [0 if cell.kind == "between" else round(SCALE * LOST) for cell in cells]
         self.lost_sums = np.cumsum([0, *self.lost])
-        self.row_sums = np.arange(len(starts)) * round(SCALE * LOST_ROW)
+        ends = [*starts[1:], len(cells)][: len(starts)]
+        rows = [sum(self.lost[start:end]) for start, end in zip(starts, ends, strict=True)]
+        row_costs = [min(cost, round(SCALE * LOST_ROW)) for cost in rows]
+        self.row_sums = np.cumsum([0, *row_costs])[: len(starts)]
         self.own_gaps = np.array([self._own_gap(j) for j in range(len(cells))], np.int64)
         self.added_gaps = np.array([self._added_gap(j) for j in range(-1, len(cells))], np.int64)
         self._costs: dict[str, tuple[Costs, Costs]] = {}
