@@ -151,7 +151,7 @@ def _array_a(apple: Apple) -> dict[str, Any] | None:
     while place < end and (size := apple.word(place + 2)):
         start = place + 5 + 2 * memory[place + 4]
         if _name(memory[place : place + 2]) == "A":
-            # the last subscript's size stands first, the high byte before the low
+            # the last subscript's size comes first, the high byte before the low
             sizes = [256 * memory[at] + memory[at + 1] for at in range(start - 2, place + 4, -2)]
             data = bytes(memory[start : place + size])
             starts = range(0, len(data), _NUMBER_SIZE)

@@ -1,4 +1,4 @@
-"""Where a mistake holds: a decision stump over the scene."""
+"""Conditions under which a mistake holds: a decision stump over the scene."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -27,7 +27,7 @@ QUANTITIES = {
     "MA / MB": "MA/MB",
     "the number of the row": "row",
 }
-"""What a condition may be about besides the columns, in names of ``spellings/impulses.py``."""
+"""Quantities of a condition besides the columns, in names of ``spellings/impulses.py``."""
 SPECIAL_VALUES = {"MU": (-10.0,), "M": (4.0,)}
 RELATIONS: dict[str, Any] = {
     "above": np.greater,

@@ -57,7 +57,7 @@ KNOWN = {
 
 
 class Form(NamedTuple):
-    """How a constant enters: the value with it, as a function and as text; the neutral constant."""
+    """A way in which a constant enters: as a function and as text; the constant without effect."""
 
     apply: Callable[[Any, Any], Any]
     text: str

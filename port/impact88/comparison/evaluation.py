@@ -31,7 +31,7 @@ FUNCTIONS: Mapping[str, Any] = {
     "single": round_to_single,
     "round_half_up": lambda x: np.floor(x + 0.5),
 }
-"""What statements and edits may call."""
+"""Functions and constants of statements and edits."""
 
 
 class Edit(NamedTuple):

@@ -81,7 +81,7 @@ class Diagnosis:
 
     @cached_property
     def limits(self) -> dict[str, Floats]:
-        """How far off the numbers of a program with a mistake may be."""
+        """Largest differences of the numbers of a program with a mistake."""
         return {name: mistake_limit(self.table, name) for name in self.names}
 
     def causes(self) -> tuple[Cause, ...]:

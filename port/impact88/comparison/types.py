@@ -1,4 +1,4 @@
-"""What a comparison returns."""
+"""The result of a comparison."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -44,7 +44,7 @@ class Cause:
 
 @dataclass(frozen=True)
 class Disagreement:
-    """How a result disagrees.
+    """The disagreement of a result.
 
     Parameters
     ----------
