@@ -21,7 +21,7 @@ from .impacts import AFTER, BEFORE, COURSES, Array
 from .problem import Known, Problem
 
 BATCH = 120  # starts at a time
-MAX_STARTS = 960
+MAX_STARTS = 480
 MAX_UNSEEN = 0.05  # expected number of minima not seen, at which starts end
 MAX_IMPACTS = 24
 RIDGE = 0.1  # sum of squares that separates two minima

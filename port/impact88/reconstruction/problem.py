@@ -348,9 +348,8 @@ class Problem:
         self._turns_with_course = [v for v in self.facing if not self.point]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
-        if self._turns_with_course and any(
-            self.frames[v][0] not in (VECTORS[v][0], VECTORS[v][2]) for v in self._turns_with_course
-        ):
+        early = {v: ((x, y), (speed, course)) for v, (x, y, speed, course) in VECTORS.items()}
+        if any(self.frames[v] not in early[v] for v in self._turns_with_course):
             raise UserError('TA or TB = "course" needs the course before the impact (HA, HB)')
         return set(names)
 
