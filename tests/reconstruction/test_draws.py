@@ -56,9 +56,13 @@ def _rejection(known, drawn, count, rng):
     sliding = evaluate(columns, ("gt",))[0]["gt"]
     results = solve({**columns, "MU": np.where(sliding > 0, -friction, friction)})
     low, high = np.minimum(results["MUC"], 0), np.maximum(results["MUC"], 0)
-    room = 0.2 * (high - low) + 0.1
+    allowance = 0.2 * (high - low) + 0.1
     keep = (results["VC"] > 0) & (results["PN"] > 0) & (results["LOSS"] >= 0)
-    keep &= (friction >= low - room) & (friction <= high + room) & (rng.random(count) < weight)
+    keep &= (
+        (friction >= low - allowance)
+        & (friction <= high + allowance)
+        & (rng.random(count) < weight)
+    )
     for name in ("VAX", "WBF"):
         keep &= (results[name] >= known[name].low) & (results[name] <= known[name].high)
     found = {**columns, **results, "MUP": friction}

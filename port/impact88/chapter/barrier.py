@@ -31,8 +31,23 @@ BARRIER = {
 VEHICLE = ("E", "MU", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "UX", "UY", "WA", "M")
 """The values of a scene that are the vehicle's and the contact's."""
 RESULTS = (
-    *("VAX", "VAY", "WAF", "XA", "YA", "XAF", "YAF", "KI", "KF", "LOSS"),
-    *("DVA", "PN", "PT", "PM", "MUP", "MUC", "STATUS"),
+    "VAX",
+    "VAY",
+    "WAF",
+    "XA",
+    "YA",
+    "XAF",
+    "YAF",
+    "KI",
+    "KF",
+    "LOSS",
+    "DVA",
+    "PN",
+    "PT",
+    "PM",
+    "MUP",
+    "MUC",
+    "STATUS",
 )
 """The results of an impact on a barrier: B's velocities stay 0."""
 

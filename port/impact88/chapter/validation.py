@@ -93,13 +93,26 @@ def nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
     gravity = float(GRAVITY / FOOT)
     heading, speed = radians(g["heading2_deg"]), g["speed2_mph"] * MPH
     return {
-        **{"E": g["restitution"], "MU": PIVOT, "EM": 1.0, "GA": g["normal_deg"]},
-        **{"DA": g["d1_ft"], "PA": g["phi1_deg"], "TA": 0.0},
-        **{"DB": g["d2_ft"], "PB": g["phi2_deg"], "TB": g["heading2_deg"]},
-        **{"MA": g["weight1_lb"] / gravity, "IA": g["yaw_inertia1_lb_ft_s2"]},
-        **{"MB": g["weight2_lb"] / gravity, "IB": g["yaw_inertia2_lb_ft_s2"]},
-        **{"UX": -g["speed1_mph"] * MPH, "UY": 0.0, "WA": 0.0, "WB": 0.0},
-        **{"VX": speed * cos(heading), "VY": speed * sin(heading)},
+        "E": g["restitution"],
+        "MU": PIVOT,
+        "EM": 1.0,
+        "GA": g["normal_deg"],
+        "DA": g["d1_ft"],
+        "PA": g["phi1_deg"],
+        "TA": 0.0,
+        "DB": g["d2_ft"],
+        "PB": g["phi2_deg"],
+        "TB": g["heading2_deg"],
+        "MA": g["weight1_lb"] / gravity,
+        "IA": g["yaw_inertia1_lb_ft_s2"],
+        "MB": g["weight2_lb"] / gravity,
+        "IB": g["yaw_inertia2_lb_ft_s2"],
+        "UX": -g["speed1_mph"] * MPH,
+        "UY": 0.0,
+        "WA": 0.0,
+        "WB": 0.0,
+        "VX": speed * cos(heading),
+        "VY": speed * sin(heading),
     }
 
 
@@ -125,9 +138,18 @@ def iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
     """Return a test as a scene of `barrier`: the car is A and travels along -x."""
     g = {name: float(row[name]) for name in ("restitution", "d_ft", "phi_deg", "gamma_deg")}
     scene = {
-        **{"E": g["restitution"], "MU": PIVOT, "EM": 1.0, "GA": g["gamma_deg"]},
-        **{"DA": g["d_ft"], "PA": g["phi_deg"], "TA": 0.0, "MA": MASS, "IA": MASS * GYRATION},
-        **{"UX": -float(row["speed_ft_s"]), "UY": 0.0, "WA": 0.0},
+        "E": g["restitution"],
+        "MU": PIVOT,
+        "EM": 1.0,
+        "GA": g["gamma_deg"],
+        "DA": g["d_ft"],
+        "PA": g["phi_deg"],
+        "TA": 0.0,
+        "MA": MASS,
+        "IA": MASS * GYRATION,
+        "UX": -float(row["speed_ft_s"]),
+        "UY": 0.0,
+        "WA": 0.0,
     }
     critical = evaluate({**BARRIER, **scene}, ("MUC",))[0]["MUC"]
     friction = float(critical) * float(row["mu_percent"]) / 100

@@ -692,9 +692,9 @@ def _reached(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[s
             continue
         low, high = RANGES[name]
         first, last = np.quantile(columns[name], INTERVAL).tolist()
-        room = NARROWED * (high - low)
+        margin = NARROWED * (high - low)
         ends = [
-            f"{end:g}" for end, near in ((low, first - low), (high, high - last)) if near < room
+            f"{end:g}" for end, near in ((low, first - low), (high, high - last)) if near < margin
         ]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"

@@ -21,7 +21,7 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     ----------
     known : mapping of str to float, str or Amount
         Values by name. Texts are read as in a file of these entries (`Case.of`), with their units;
-        None stands for nothing.
+        None counts as not given.
     allowed : collection of str
         Names that may be known.
 
