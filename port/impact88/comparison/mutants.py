@@ -47,7 +47,7 @@ ANY = (
 LINEAR = "-a; 0; 2 * a; a / 2"
 CONDITIONS = ("point", "pivot", "stick")
 CONSTANTS = "0; 1; 2; 3; 4; -1; 0.5; 10; 100; 90; 360"
-"""Alternatives of any number, for an expression with unknowns, for a constant."""
+"""Alternatives of any expression, of one with unknowns, of a number."""
 
 
 class Option(NamedTuple):
