@@ -306,7 +306,7 @@ def _bounds(case: Case, names: Iterable[str], seed: int) -> Bounds:
 
     values = {
         name: case.numbers.get(name) if math.isnan(amount.value) else amount
-        for name, amount in case.entries.items()
+        for name, amount in sorted(case.entries.items())  # random draws, whatever the file's order
     }
     wanted = [name for name in names if name in RESULTS]
     return bounds(values, wanted, samples=DRAWS, seed=seed, correlations=case.correlations)
@@ -446,7 +446,8 @@ def _reconstructed(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     """Return the impact that agrees best with what is known; others are its alternatives."""
     from ..reconstruction.answer import KNOWABLE, reconstruct
 
-    known = {name: amount for name, amount in case.entries.items() if name != "TF"}
+    # random draws do not depend on the file's order
+    known = {name: amount for name, amount in sorted(case.entries.items()) if name != "TF"}
     check_names(known, KNOWABLE, "value that a reconstruction can use", case.source)
     duration = case.entries["TF"].value if "TF" in case.entries else None
     try:
