@@ -87,7 +87,7 @@ def write(
         lines += ["", f"  scene as typed: {scene}"]
     if verification.unseen:
         lines += ["", "  Errors this page could not reveal:"]
-        lines += [f"  - {sentence}" for sentence in _unseen(verification)]
+        lines += [f"  - {sentence}" for sentence in unseen_lines(verification)]
     return lines
 
 
@@ -139,7 +139,7 @@ def _table(verification: Verification) -> Iterator[str]:
         yield f"  {name:{widths[0]}} {read:>{widths[1]}} {printed:>{widths[2]}}  {word}".rstrip()
 
 
-def _unseen(verification: Verification) -> Iterator[str]:
+def unseen_lines(verification: Verification) -> Iterator[str]:
     """Yield a sentence for each input with digits that nothing else on the page confirms."""
     for name, count in verification.unseen.items():
         text = verification.scene[name]

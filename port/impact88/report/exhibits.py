@@ -8,22 +8,11 @@ from hashlib import sha256
 from typing import Any, NamedTuple
 
 from ..errors import UserError
-from ..files import decode
-from ..printouts import VERDICTS, Finding, Kind, Verdict, Verification, judge
+from ..printouts import VERDICTS, Kind, Verdict, Verification, judge, words
+from ..printouts.sources import read_text
 
 PICTURE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"%PDF-")
 """First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
-MEANINGS = {
-    Verdict.IDENTICAL: "every label and number is what the 1988 program prints for the inputs on "
-    "the page, and nothing else is between its first and last row",
-    Verdict.AS_READ: "what was read exactly is the 1988 program's; all other places are listed, to "
-    "be looked at on the paper",
-    Verdict.DIFFERS: "the text given differs from what the 1988 program prints for the inputs on "
-    "it; where a computer read it, look at the paper",
-    Verdict.INCOMPLETE: "numbers are missing or were not read beyond doubt, and the others do not "
-    "decide",
-}
-"""Sentence that explains each verdict."""
 DIFFERS, DOUBT, FOREIGN = "differs", "doubt", "foreign"
 """Looks of marks: another number or word, one not read exactly, text that is not the program's."""
 
@@ -123,17 +112,10 @@ def examine(name: str, data: bytes) -> list[Exhibit]:
     digest = sha256(data).hexdigest()
     if data.startswith(PICTURE_STARTS):
         return _examine_picture(name, data)
-    results = judge(decode(data, name))
+    results = judge(read_text(data, name))
     if not results:
-        raise UserError("no printout was found; expected a page that the 1988 program prints", name)
+        raise UserError("no printout found; expected labels and numbers such as MA= 143.5", name)
     return [of_text(result, f"{name}, printout {k}", digest) for k, result in enumerate(results, 1)]
-
-
-def note_of(finding: Finding) -> str:
-    """Return what was found at a place, in words."""
-    read = f" {finding.read.strip()!r} read" if finding.read.strip() else ""
-    printed = f", {finding.printed.strip()!r} printed" if finding.printed.strip() else ""
-    return f"{finding.kind.value}:{read}{printed}".rstrip(":").replace(":,", ":")
 
 
 def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
@@ -155,20 +137,18 @@ def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
         if 0 <= start <= stop and (not marks or start >= marks[-1].stop):
             is_adverse = VERDICTS[finding.kind] is Verdict.DIFFERS
             look = DIFFERS if is_adverse else FOREIGN if finding.kind is Kind.FOREIGN else DOUBT
-            marks.append(Mark(start, stop, look, note_of(finding)))
+            marks.append(Mark(start, stop, look, words.sentence_of(finding)))
+    _, meaning, *sentences = (line.strip() for line in words.write(result, brief=True))
+    scene = " ".join(f"{name} = {text}" for name, text in result.scene.items())
     return Exhibit(
         source,
-        result.verdict.value.upper(),
-        MEANINGS[result.verdict],
+        words.TITLES[result.verdict],
+        meaning,
         result.verdict is Verdict.DIFFERS,
         {
-            "findings": tuple(
-                f"line {result.line_of(f.start)}: {f.name} {note_of(f)}" for f in result.findings
-            ),
-            "explanation": (result.explanation,) if result.explanation else (),
-            "errors that this page could not reveal": tuple(
-                f"{name}: {count} digits" for name, count in result.unseen.items()
-            ),
+            "": tuple(sentences),
+            "inputs, as typed into the program": (scene,) if scene else (),
+            "errors that this page could not reveal": tuple(words.unseen_lines(result)),
         },
         result.text[first:end],
         tuple(marks),
