@@ -86,7 +86,7 @@ def test_what_cannot_be_drawn_is_said() -> None:
 
 def test_findings_are_marked_in_the_text() -> None:
     page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")
-    (exhibit,) = examine("paper.txt", page.encode())
+    (exhibit,) = examine("paper.txt", page.replace("\n", "\r\n").encode())
     assert exhibit.verdict == "DIFFERS"
     assert "".join(text for text, _, _ in exhibit.pieces()) == exhibit.text
     html = verification_page([exhibit], examiner="J. Doe")
@@ -94,6 +94,7 @@ def test_findings_are_marked_in_the_text() -> None:
     assert "paper.txt, printout 1" in html
     assert exhibit.digest in html
     assert "MA = 143.5" in html
+    assert "\\r" not in html
 
 
 def test_findings_are_marked_on_the_picture() -> None:

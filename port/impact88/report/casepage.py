@@ -80,8 +80,14 @@ def environment() -> Environment:
         undefined=jinja2.StrictUndefined,
     )
     templates.filters["css_text"] = _css_text
-    templates.filters["printable"] = lambda text: printable(str(text), "\n")
+    templates.filters["printable"] = _displayed_text
     return templates
+
+
+def _displayed_text(text: object) -> str:
+    """Return a text of any source for a page, with escapes for what does not print."""
+    lines = str(text).replace("\r\n", "\n").replace("\r", "\n")
+    return printable(lines, "\n\t")
 
 
 def _css_text(text: str) -> str:
