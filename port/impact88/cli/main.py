@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import gc
 import os
-import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -21,6 +20,10 @@ from ..names import did_you_mean
 from ..version import __version__
 from . import COMMANDS, GONE
 from .options import check_files, printing_to
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 UNUSABLE = 2
 INTERNAL = 3
@@ -42,32 +45,18 @@ exit status: 0 done, 1 adverse result, 2 unusable input, 3 internal error"""
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are UserErrors, and whose help begins with the command's examples."""
 
-    def error(self, message: str) -> None:  # type: ignore[override]
-        """Raise UserError, with a hint at the option or choice that was meant."""
-        choices: list[str] = list(self._option_string_actions)
-        word = re.search(r"unrecognized arguments: (-[^\s=]+)", message)
-        if word is None and (word := re.search(r"invalid choice: '([^']*)'", message)):
-            choices = [c for a in self._actions for c in a.choices or () if isinstance(c, str)]
-        hint = did_you_mean(word[1], choices) if word else ""
-        raise UserError(f"{message}{hint} (see {self.prog.replace('impact88', 'impact88 help')})")
+    def error(self, message: str) -> NoReturn:
+        """Raise UserError."""
+        raise UserError(f"{message} (see {self.prog.replace('impact88', 'impact88 help')})")
 
     def format_help(self) -> str:
         """Return examples and explanations, then usage and options."""
-        return f"{(self.description or '').strip()}\n\n{super().format_help()}"
+        examples, self.description = self.description, None
+        return f"{examples}\n\n{super().format_help()}"
 
     def print_help(self, file: object = None) -> None:
         """Print the help; an error of writing is an error."""
         print(self.format_help(), end="")
-
-
-class HelpFormatter(argparse.HelpFormatter):
-    """Usage and options alone."""
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog, max_help_position=28, width=96)
-
-    def add_text(self, text: str | None) -> None:
-        """Leave the description to `Parser.format_help`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -137,12 +126,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
 def _run(name: str, words: Sequence[str]) -> int:
     """Parse a command's words and run it."""
     module = import_module(f".{name}", __package__)
-    parser = Parser(
-        f"impact88 {name}",
-        description=module.__doc__,
-        formatter_class=HelpFormatter,
-        allow_abbrev=False,
-    )
+    parser = Parser(f"impact88 {name}", description=module.__doc__, allow_abbrev=False)
     module.declare(parser)
     try:
         args = parser.parse_args(words)
@@ -193,23 +177,19 @@ def _reason(error: Exception) -> str | None:
         if package in ("", "impact88"):
             return None
         return f"{package} is not installed; expected: pip install {package}"
-    if isinstance(error, RecursionError):
-        return "the input is nested too deeply; expected a simpler one"
-    if isinstance(error, MemoryError):
-        return "not enough memory; expected a smaller input, or more memory"
+    if isinstance(error, RecursionError | MemoryError):
+        return "the input is too large or nested too deeply; expected a smaller one"
     return None
 
 
 def _report_internal(command: str | None, error: Exception, debug: bool) -> None:
     """Print an internal error and its place in one line; the traceback on request."""
-    step, place = error.__traceback__, ""
-    while step is not None:
-        place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
-        step = step.tb_next
-    if debug:
-        import traceback
+    import traceback
 
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    if debug:
         traceback.print_exception(error)
     advice = "" if debug else " (IMPACT88_DEBUG=1 prints the traceback)"
+    place = f"{os.path.basename(frame.filename)}:{frame.lineno}"
     message = one_line(f"{type(error).__name__}: {error}", 200)
-    note(command, f"internal error; please report it: {message}{place}{advice}")
+    note(command, f"internal error; please report it: {message} at {place}{advice}")
