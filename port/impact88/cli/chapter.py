@@ -1,5 +1,5 @@
 """impact88 chapter example                       Section VII, step by step
-impact88 chapter colinear --set MA=154.7 --set MB=99.1 --set E=.071 --set UN=-56.8 --set VN=0
+impact88 chapter colinear --set MA=155 --set MB=99 --set E=.07 --set UN=-57 --set VN=0
 impact88 chapter barrier car.toml
 impact88 chapter delta-v crash.toml --like 90-side
 impact88 chapter staged --table 2              typical E, EM and MU
@@ -49,7 +49,12 @@ def declare(parser: options.Parser) -> None:
     parser.add_argument("problem", choices=tuple(PROBLEMS), help="the problem, see above")
     options.add_case(parser)
     view = parser.add_argument_group("delta-v and staged").add_mutually_exclusive_group()
-    view.add_argument("--like", choices=tuple(CATEGORIES), help="losses of this category")
+    view.add_argument(
+        "--like",
+        choices=tuple(CATEGORIES),
+        metavar="KIND",
+        help=f"losses like {', '.join(CATEGORIES)}",
+    )
     view.add_argument("--table", type=int, choices=(1, 2), help="a table as emended")
     view.add_argument("--cells", action="store_true", help="cells that were emended, with evidence")
     view.add_argument(

@@ -317,7 +317,9 @@ def write_csv(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
         if find_spec("polars"):
             from .polarsformats import frame_of_texts
 
-            frame_of_texts(columns).write_csv(file, include_header=is_first)
+            data = io.BytesIO()  # polars hides which error of the file it met
+            frame_of_texts(columns).write_csv(data, include_header=is_first)
+            file.write(data.getbuffer())
         else:
             text = io.StringIO(newline="")
             writer = csv.writer(text, lineterminator="\n")
