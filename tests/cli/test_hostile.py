@@ -96,7 +96,6 @@ verify nothing.txt
 verify picture.gif
 verify page.html --report page.html
 oracle nothing.jsonl
-oracle lines.jsonl
 compare
 compare nothing.csv
 compare empty.csv

@@ -8,7 +8,7 @@ COMMANDS = {
     "scene": "write a file to fill in, or a published run's",
     "oracle": "compute reference answers, to check other programs with",
     "compare": "say where another program's results differ, and why",
-    "selfcheck": "check this installation against an Apple II Plus",
+    "selfcheck": "replay what a real Apple II Plus did: pass or fail",
     "basic": "the ] prompt of an Apple II Plus, or any Applesoft program",
     "web": "the same in a browser, reachable from this computer only",
     "chapter": "the chapter's other problems: colinear, barrier, delta-v, staged, example",
