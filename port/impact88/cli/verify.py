@@ -18,9 +18,10 @@ exit status: 0 identical; 1 any other verdict; 2 a file that cannot be read"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from glob import glob
+from hashlib import sha256
 from typing import TYPE_CHECKING
 
 from ..errors import UserError, note
@@ -32,7 +33,8 @@ from .output import print_json
 if TYPE_CHECKING:
     from ..report.exhibits import Exhibit
 
-IDENTICAL = "IDENTICAL"
+HEADINGS = {"number": "case", "examiner": "examiner", "date": "date"}
+"""Headings of the page, and the options that give them."""
 
 
 def declare(parser: options.Parser) -> None:
@@ -52,15 +54,9 @@ def declare(parser: options.Parser) -> None:
     options.add_set(parser)
     options.add_view(parser)
     parser.add_argument(
-        "--listing",
-        type=options.InputPath,
-        metavar="FILE.bas",
-        help="the copy of the listing that printed the pages",
-    )
-    parser.add_argument(
         "--report", type=options.OutputPath, metavar="FILE.html", help="write a page for the case"
     )
-    for name in ("case", "examiner", "date"):
+    for name in HEADINGS.values():
         parser.add_argument(f"--{name}", default="", help="heading of that page")
     options.add_json(parser)
     options.add_output(parser)
@@ -68,53 +64,63 @@ def declare(parser: options.Parser) -> None:
 
 def main(args: options.Args) -> int:
     """Verify printouts."""
-    given = None
+    given: Mapping[str, str] | None = None
     if args.file or args.sample or args.set:
         given = options.case_of(args).texts
     status, exhibits = 0, []
-    for path in _paths(args.printouts):
+    for path in (path for name in args.printouts for path in sorted(glob(name)) or [name]):
         try:
-            found = examine(display_name(path), read_bytes(path), given, args.listing)
+            data = read_bytes(path)
+            found = [*_verified(args, display_name(path), data, given)]
         except UserError as error:
             note("verify", str(error))
             status = 2
             continue
         exhibits += found
-        for exhibit in found:
-            status = max(status, int(exhibit.verdict != IDENTICAL))
-            if args.json:
-                print_json("verify", _record(exhibit))
-            else:
-                print("\n".join(_lines(exhibit, args.brief)))
+        adverse = any(exhibit.verdict != "IDENTICAL" for exhibit in found)
+        status = max(status, int(adverse))
     if args.report and exhibits:
         from ..report.casepage import verification_page
 
-        headings = {"number": args.case, "examiner": args.examiner, "date": args.date}
+        headings = {name: getattr(args, option) for name, option in HEADINGS.items()}
         with options.printing_to(args.report):
             print(verification_page(exhibits, **headings), end="")
     return status
 
 
-def _paths(names: list[str]) -> list[str]:
-    """Return the files that names stand for; patterns are for shells that do not expand them."""
-    return [path for name in names for path in sorted(glob(name)) or [name]]
+def _verified(
+    args: options.Args, name: str, data: bytes, given: Mapping[str, str] | None
+) -> Iterator[Exhibit]:
+    """Print and yield the printouts of a file."""
+    from ..printouts import judge, words
+    from ..printouts.sources import read_text
+    from ..report.exhibits import PICTURE_STARTS, examine, of_text
+
+    if data.startswith(PICTURE_STARTS):
+        for exhibit in examine(name, data):
+            if args.json:
+                print_json("verify", {**asdict(exhibit), "picture": None})
+            else:
+                print("\n".join([*_picture_lines(exhibit, args.brief), ""]))
+            yield exhibit
+        return
+    results = judge(read_text(data, name), given)
+    if not results:
+        raise UserError("no printout found; expected labels and numbers such as MA= 143.5", name)
+    digest = sha256(data).hexdigest()
+    for number, result in enumerate(results, 1):
+        if args.json:
+            print_json("verify", words.record(result, name, number, digest))
+        else:
+            print("\n".join([*words.write(result, name, number, args.brief), ""]))
+        yield of_text(result, f"{name}, printout {number}", digest)
 
 
-def _record(exhibit: Exhibit) -> dict[str, object]:
-    """Return an exhibit as an object for JSON, without its picture."""
-    record = asdict(exhibit)
-    record.pop("picture")
-    return record
-
-
-def _lines(exhibit: Exhibit, is_brief: bool) -> Iterator[str]:
-    """Yield the lines of an exhibit."""
+def _picture_lines(exhibit: Exhibit, is_brief: bool) -> Iterator[str]:
+    """Yield the lines of a printout that was read from a picture."""
     yield f"{exhibit.source}: {exhibit.verdict}"
-    if not is_brief:
-        yield from paragraph(exhibit.meaning, "", 2)
     for heading, sentences in exhibit.sections.items():
-        if sentences and heading and not is_brief:
-            yield f"  {heading}"
-        for sentence in sentences:
-            yield from paragraph(sentence, "", 4 if heading else 2)
-    yield ""
+        if not heading or not is_brief:
+            yield from [f"  {heading}"] if heading and sentences else []
+            for sentence in sentences:
+                yield from paragraph(sentence, "", 4)
