@@ -18,11 +18,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ... import status
-from ...collision.doubles import double, doubles_of, opposite
-from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
-from ...mechanics.closedform.solve import solve
-from ...mechanics.friction import admissible_friction
+from ...decimals import negated as opposite
+from ...decimals import to_double as double
+from ...mechanics.solve import solve
 from ...names import RESULTS
+from ..fields import ANGLES, FIELDS, INPUTS, doubles_of, scene_name
 from ..reading.numerals import printable, value_of
 from ..recovery.replays import run_columns
 from ..recovery.typedtext import mu_turned
@@ -69,7 +69,6 @@ def warnings(scene: Scene) -> list[str]:
     values |= solve(values, ["STATUS", "MUC", "MUP", "PN", "PM"])
     bits = int(values["STATUS"])
     sentences = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
-    sentences += admissible_friction(bits, values)
     point, mu = values["M"] == 4, values["MU"]
     if point and (values["DA"] or values["DB"]):
         sentences.append(

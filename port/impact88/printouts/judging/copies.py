@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from ...collision.casescene import sample
-from ...collision.doubles import double, opposite
-from ...collision.fields import ANGLES, INPUTS, ZERO_DETERMINANT, outcome_fields, scene_name
+from ...decimals import negated as opposite
+from ...decimals import to_double as double
 from ...errors import UserError
 from ...program.copies import ListingCopy
 from ...program.run import run
+from ...program.scene import sample
+from ..fields import ANGLES, INPUTS, ZERO_DETERMINANT, outcome_fields, scene_name
 from ..reading.numerals import NUMBER, value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered

@@ -12,7 +12,7 @@ from enum import StrEnum
 from itertools import groupby
 from typing import Any
 
-from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
 from ..reading.alignment import BEHIND
 from ..reading.differences import Difference, Kind, difference_at, differences_along
 from ..reading.glyphs import ILLEGIBLE

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
-from ...collision.fields import FIELDS
+from ..fields import FIELDS
 from .editpath import Step
 from .glyphs import Page, Region, letters
 

@@ -15,7 +15,7 @@ import re
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from ...collision.fields import ANGLES, FIELDS
+from ..fields import ANGLES, FIELDS
 from .alignment import (
     BEHIND,
     FIRST_STARS,

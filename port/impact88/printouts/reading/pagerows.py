@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
-from ...collision.fields import ANGLES
+from ..fields import ANGLES
 from .alignment import ANGLE_ROW, EXPONENT, HEADING, LINES, PROMPTS, WORDS
 from .glyphs import Page, label_cost, letters
 from .numerals import is_number, value_of

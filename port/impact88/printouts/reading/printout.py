@@ -13,9 +13,8 @@ from dataclasses import dataclass, field
 from itertools import groupby, pairwise, zip_longest
 
 from ...apple.applesoft.errorcodes import CODES
-from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from ...errors import UserError, printable, quoted
-from ...messages.arguments import explains_arguments
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from . import numerals
 from . import plaintext as pasted
 from .alignment import (
@@ -707,7 +706,6 @@ def _reply_parts(region: Region) -> tuple[list[Region], set[int]]:
     return parts, echoed
 
 
-@explains_arguments
 def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """Return the printouts in a text, in order.
 

@@ -9,9 +9,9 @@ comparison.
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ...collision.case import VALUE_LIMIT
-from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
+from ...cases.case import MAX_TYPED
 from ...names import SCENE
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ..reading.glyphs import letters
 from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
@@ -238,5 +238,5 @@ def reply_candidates(reply: Reading) -> list[tuple[str, str, float]]:
     return [
         (text, seen[1], cost)
         for text, cost in penalties.items()
-        if len(text) <= VALUE_LIMIT and (seen := stored_and_printed(text)) is not None
+        if len(text) <= MAX_TYPED and (seen := stored_and_printed(text)) is not None
     ]

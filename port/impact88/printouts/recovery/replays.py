@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ...apple.applesoft.operators import Real
-from ...collision.fields import FIELDS, ZERO_DETERMINANT, outcome_fields
 from ...names import SCENE
 from ...program.arithmetics import Arithmetic
 from ...program.run import run
+from ..fields import FIELDS, ZERO_DETERMINANT, outcome_fields
 
 
 class Outcome(NamedTuple):

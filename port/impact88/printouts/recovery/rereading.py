@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
-from ...collision.fields import INPUTS, scene_name
+from ..fields import INPUTS, scene_name
 from ..reading.numerals import printable
 from .recovered import Recovered
 from .search import Column, Scored, column_of

@@ -19,12 +19,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.doubles import double, opposite
-from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
-from ...mechanics.closedform import energy as closed_form
-from ...mechanics.closedform.general import typed_friction
-from ...mechanics.closedform.solve import solve
-from ...names import VELOCITIES
+from ...decimals import negated as opposite
+from ...decimals import to_double as double
+from ...mechanics.solve import evaluate, solve
+from ...names import PIVOT, VELOCITIES
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from . import replays
 from .typedtext import mu_turned, texts_that_print
 
@@ -248,7 +247,9 @@ class Search:
         mu = value["MU"]
         if "MUP" not in self.evidence.inputs:
             return mu
-        return typed_friction(value, mu)
+        sliding = evaluate({"E": 0.0, "EM": 0.0, **value}, ("gt",))[0]["gt"]
+        typed: Floats = np.where((sliding > 0.0) & (mu != PIVOT), -mu, mu)
+        return typed
 
     def _other_spellings(self, best: Scored) -> Scored:
         """Return the best scene over other spellings of the same printed inputs: typed zeros that
@@ -354,9 +355,9 @@ def _values(columns: Columns, picks: Picks) -> dict[str, Floats]:
 def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
     """Return the kinetic energy (line 320) in double precision."""
     with np.errstate(all="ignore"):
-        energy: Floats = closed_form.kinetic_energy(
-            [value[name] for name in ("MA", "MB", "IA", "IB")], [value[n] for n in VELOCITIES]
-        )
+        ax, ay, wa, bx, by, wb = (value[name] for name in VELOCITIES)
+        moving = value["MA"] * (ax * ax + ay * ay) + value["MB"] * (bx * bx + by * by)
+        energy: Floats = 0.5 * (moving + value["IA"] * (wa * wa) + value["IB"] * (wb * wb))
     return energy
 
 

@@ -13,8 +13,9 @@ from itertools import combinations
 from operator import ne
 from typing import NamedTuple
 
-from ...collision.doubles import double, opposite
-from ...collision.fields import ANGLES
+from ...decimals import negated as opposite
+from ...decimals import to_double as double
+from ..fields import ANGLES
 from ..reading.numerals import is_number, printable
 
 DIGIT = "digit misread"

@@ -14,7 +14,8 @@ from functools import lru_cache
 from ...apple.applesoft import decimaltext
 from ...apple.applesoft.errorcodes import ApplesoftError
 from ...apple.applesoft.real import divide, multiply, rounded, to_stored
-from ...collision.doubles import double, opposite
+from ...decimals import negated as opposite
+from ...decimals import to_double as double
 from ..reading.numerals import value_of
 
 _TYPED_ZEROS = 3  # trailing zeros that may have been typed

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ...collision.fields import FIELDS, REPLIES
 from ...errors import UserError
 from ...files import display_name
-from ...messages.progress import progress
 from ...names import SCENE
+from ..fields import FIELDS, REPLIES
 from ..judging.copies import CopyPages, as_printed, converted_inputs
 from ..judging.judgement import FieldCheck, Status, Verdict, status_of
 from ..reading.differences import Difference, Kind
@@ -39,30 +38,28 @@ def verify_pages(
     results: list[Verification] = []
     without, causes = list[int](), ""
     seeds = scenes_in(seed)
-    with progress(None, "pages read") as meter:
-        for page in pages_of(data, path):
-            page_results: list[Verification] = []
-            unread = 0
-            for paper in papers_of(page.picture):
-                scenes = [*seeds, *scenes_in(page.text)]
-                leaves, tried = read_page(paper, scenes, copy)
-                unread += not leaves
-                causes = causes or ("" if leaves else "; ".join([*paper.remarks, tried]))
-                for leaf in leaves:
-                    number = len(results) + len(page_results) + 1
-                    result = _verification(path, number, page, paper, leaf, copy)
-                    result.exhibit = partial(exhibit, paper.grey, leaves, leaf)
-                    result.remarks += [f"page {page.number}: {remark}" for remark in paper.remarks]
-                    page_results.append(result)
-            if page_results and unread:
-                remark = f"no printout was found on {unread} of the sheets it shows"
-                page_results[0].remarks.append(f"page {page.number}: {remark}")
-            if page.text.strip():
-                _compare_text_layer(page_results, page.text)
-            if not page_results:
-                without.append(page.number)
-            results += page_results
-            meter.update(1)
+    for page in pages_of(data, path):
+        page_results: list[Verification] = []
+        unread = 0
+        for paper in papers_of(page.picture):
+            scenes = [*seeds, *scenes_in(page.text)]
+            leaves, tried = read_page(paper, scenes, copy)
+            unread += not leaves
+            causes = causes or ("" if leaves else "; ".join([*paper.remarks, tried]))
+            for leaf in leaves:
+                number = len(results) + len(page_results) + 1
+                result = _verification(path, number, page, paper, leaf, copy)
+                result.exhibit = partial(exhibit, paper.grey, leaves, leaf)
+                result.remarks += [f"page {page.number}: {remark}" for remark in paper.remarks]
+                page_results.append(result)
+        if page_results and unread:
+            remark = f"no printout was found on {unread} of the sheets it shows"
+            page_results[0].remarks.append(f"page {page.number}: {remark}")
+        if page.text.strip():
+            _compare_text_layer(page_results, page.text)
+        if not page_results:
+            without.append(page.number)
+        results += page_results
     if not results:
         raise UserError(
             f"{display_name(path)}: no printout was found in the picture; expected lines of fixed "

@@ -10,12 +10,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ...errors import one_line, printable
 from ...files import display_name
-from ...messages import notebook
-from ...messages.plaintable import table
-from ...messages.schemas import with_schema
+from ...layout import table
+from ..fields import ANGLES, FIELDS, INPUTS, scene_name
 from ..judging.beside import not_verifiable
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict
 from ..reading.differences import Difference, Kind
@@ -25,7 +23,6 @@ from ..recovery.typedtext import stored_and_printed
 
 if TYPE_CHECKING:
     from ...program.copies import ListingCopy
-    from ..explaining.causes import Cause
 
 TITLES = {
     Verdict.IDENTICAL: "IDENTICAL",
@@ -79,7 +76,7 @@ class Verification:
         Inputs without a printed number, and those whose printed number was not read exactly.
     unseen : list of str
         Errors that this page could not reveal.
-    explanations : list of Cause
+    explanations : list
         What would make a differing page agree.
     findings, warnings, remarks : list of str
         Other findings, warnings of the mechanics, and notes on how the page was read.
@@ -131,7 +128,7 @@ class Verification:
     missing: list[str] = field(default_factory=list)
     guessed: list[str] = field(default_factory=list)
     unseen: list[str] = field(default_factory=list)
-    explanations: list[Cause] = field(default_factory=list)
+    explanations: list[Any] = field(default_factory=list)
     findings: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
@@ -194,9 +191,6 @@ class Verification:
             "numbers read exactly so>"
         )
 
-    def _repr_html_(self) -> str:
-        return notebook.preformatted_html("\n".join(lines(self)))
-
     def as_json(self) -> dict[str, Any]:
         """Return the object that ``impact88 verify --json`` prints.
 
@@ -213,7 +207,7 @@ class Verification:
             described["characters"] = self.characters
         if self.cells:
             described |= {"cells": self.cells, "marks": self.marks}
-        return with_schema("verify", described)
+        return described
 
 
 class Verifications(list[Verification]):
@@ -233,10 +227,6 @@ class Verifications(list[Verification]):
     ['IDENTICAL']
     """
 
-    def _repr_html_(self) -> str:
-        return notebook.preformatted_html(
-            "\n".join(line for result in self for line in lines(result))
-        )
 
 
 _IN_JSON = (
@@ -284,7 +274,7 @@ class Examined:
         if self.error is None:
             return [result.as_json() for result in self.results]
         refused = {"file": self.file, "sha256": self.sha256, "error": self.error}
-        return [with_schema("verify", refused)]
+        return [refused]
 
 
 # --- in words -------------------------------------------------------------------------------------

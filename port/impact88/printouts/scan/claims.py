@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
-from ...collision.fields import ANGLES, FIELDS, label
+from ..fields import ANGLES, FIELDS, label
 from ..reading.alignment import LINES
 
 _MAX_WORDS = 18  # characters between a label and its number, where no equals sign stands

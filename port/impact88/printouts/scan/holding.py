@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.fields import REPLIES
+from ..fields import REPLIES
 from ..judging.judgement import Verdict
 from .grid import Grid
 from .ink import Floats

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
 from ...apple.applesoft.decimaltext import is_number
-from ...collision.fields import ANGLES, FIELDS, INPUTS, REPLIES, scene_name
 from ...errors import UserError
+from ..fields import ANGLES, FIELDS, INPUTS, REPLIES, scene_name
 from ..reading.numerals import as_printed, printable, value_of
 from ..reading.printout import read_printouts
 from ..recovery.recovered import MAX_RESULT_TEXTS, MAX_TEXTS, recover

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...collision.fields import FIELDS, INPUTS
+from ..fields import FIELDS, INPUTS
 from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
 from .claims import claims, is_of_a_printout

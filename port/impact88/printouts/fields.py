@@ -6,6 +6,9 @@ kind from here.
 
 import re
 from collections import namedtuple
+from collections.abc import Mapping
+
+from ..decimals import to_double
 
 
 class Field(namedtuple("Field", ("name", "line", "places"))):
@@ -91,3 +94,8 @@ def outcome_fields(printed: str) -> dict[str, str]:
             break
         texts[name], place = value[1], value.end()
     return texts
+
+
+def doubles_of(texts: Mapping[str, str]) -> dict[str, float]:
+    """Return the double of each text, by name."""
+    return {name: to_double(text) for name, text in texts.items()}
