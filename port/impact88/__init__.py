@@ -5,14 +5,13 @@ compute as the Apple did, because the digits typed matter, numbers or arrays for
 precision. Results have the names of `names.RESULTS`.
 
 The 1988 program
-    Scene, sample       a scene: from a mapping, a TOML file, or a published run
+    Scene, sample       a scene as typed, or that of a published run
     run, Run            the program on a scene, as an Apple II Plus prints it
     replay, Replay      the same arithmetic over arrays of scenes, bit for bit
-    Applesoft           the machine itself, for any Applesoft program
+    Applesoft           the Apple II Plus, for any Applesoft program
 
 Old printouts and other programs
-    verify, Verification
-                        check a printout against the program's own, and explain differences
+    verify, Verification    check a printout against the program's own, explain what differs
     oracle              complete reference results of scenes, to check other programs with
     compare, Comparison, Cause      another program's table compared with the reference
 
@@ -20,18 +19,15 @@ Today's work, in double precision
     solve               final velocities and the rest, over arrays
     prepared, Prepared      the same for many short calls: root finders, samplers
     evaluate            what follows from any quantities that are known of an impact
-    solve_frame         the same for pandas, polars, pyarrow, records, lists of dicts
     Amount              a value, exact or known within limits
     bounds, Bounds      results of a scene known within limits
     solve_for, Solution     Equations 13-18 for any unknowns, over arrays
     reconstruct, Reconstruction     the same with tolerances: what is known is adjusted
     colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
-    scene_svg, Svg      a scene from above
 
     accelerated         the processor's instructions that `solve` uses, None if it uses numpy only
     names, status       the tables of names and of STATUS's bits
     UserError           raised for input that cannot be used
-    PlausibilityWarning     issued for implausible values of a frame
 
 Each is imported on first use, so that running the 1988 program does not import numpy.
 """
@@ -46,19 +42,14 @@ if TYPE_CHECKING:
     from . import status as status
     from .apple.emulator.emulator import Applesoft as Applesoft
     from .cases.amounts import Amount as Amount
-    from .casework.figures.canvas import Svg as Svg
-    from .casework.figures.sceneview import scene_svg as scene_svg
     from .chapter.barrier import barrier as barrier
     from .chapter.colinear import colinear as colinear
     from .chapter.colinear import colinear_inverse as colinear_inverse
     from .chapter.deltav import delta_v as delta_v
-    from .collision.casescene import Scene as Scene
-    from .collision.casescene import sample as sample
     from .comparison.compare import compare as compare
     from .comparison.oracle import oracle as oracle
     from .comparison.types import Cause as Cause
     from .comparison.types import Comparison as Comparison
-    from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
     from .library import accelerated as accelerated
     from .mechanics.solve import Prepared as Prepared
@@ -71,13 +62,14 @@ if TYPE_CHECKING:
     from .program.replay import replay as replay
     from .program.run import Run as Run
     from .program.run import run as run
+    from .program.scene import Scene as Scene
+    from .program.scene import sample as sample
     from .reconstruction.answer import Reconstruction as Reconstruction
     from .reconstruction.answer import reconstruct as reconstruct
     from .reconstruction.bounds import Bounds as Bounds
     from .reconstruction.bounds import bounds as bounds
     from .reconstruction.unknowns import Solution as Solution
     from .reconstruction.unknowns import solve_for as solve_for
-    from .tables.frames import solve_frame as solve_frame
 
 _LAZY = {
     name: place
@@ -91,20 +83,17 @@ _LAZY = {
         "comparison.oracle": "oracle",
         "comparison.types": "Cause Comparison",
         "apple.emulator.emulator": "Applesoft",
-        "errors": "PlausibilityWarning UserError",
-        "casework.figures.canvas": "Svg",
-        "casework.figures.sceneview": "scene_svg",
+        "errors": "UserError",
         "library": "accelerated",
         "mechanics.solve": "Prepared evaluate prepared solve",
         "program.run": "Run run",
-        "printouts.findings": "Verification",
         "reconstruction.answer": "Reconstruction reconstruct",
         "reconstruction.bounds": "Bounds bounds",
         "reconstruction.unknowns": "Solution solve_for",
         "program.replay": "Replay replay",
+        "printouts.findings": "Verification",
         "printouts.sources": "verify",
-        "collision.casescene": "Scene sample",
-        "tables.frames": "solve_frame",
+        "program.scene": "Scene sample",
     }.items()
     for name in names_there.split()
 }

@@ -68,30 +68,6 @@ class UserError(ValueError):
         self.where = where
 
 
-class PlausibilityWarning(UserWarning):
-    """Implausible values in a frame.
-
-    Such are a mass, speed, arm or inertia that no vehicle has, velocities and headings in different
-    conventions, and EM = 0.
-
-    Notes
-    -----
-    The values are used all the same.
-    ``warnings.filterwarnings("ignore", category=impact88.PlausibilityWarning)`` silences it.
-
-    Examples
-    --------
-    >>> import warnings
-    >>> with warnings.catch_warnings(record=True) as caught:
-    ...     warnings.simplefilter("always")
-    ...     frame = {"MA": [3091.0, 3.091]}
-    ...     scene = impact88.sample(1).numbers()
-    ...     results = impact88.solve_frame(frame, "LOSS", scene=scene, units="us")
-    >>> print(str(caught[0].message)[:32])
-    1 row, at position 1: MA = 3.091
-    """
-
-
 def note(command: str | None, text: str) -> None:
     """Write the line "impact88 COMMAND: text" to stderr, if that accepts it."""
     name = f"impact88 {command}" if command else "impact88"
