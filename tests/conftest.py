@@ -2,9 +2,6 @@
 
 ``pytest --force-regen`` writes anew the golden printouts that differ, and fails, so that somebody
 looks at the difference before committing it.
-
-Files of tests are shared out among processes, those that take longest first, so that none is begun
-when all others are done.
 """
 
 from __future__ import annotations
@@ -15,58 +12,13 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import random
-from collections.abc import Callable, Iterator
-from contextlib import nullcontext
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from captures import ROOT
 from hypothesis import HealthCheck, settings
 from pytest_regressions.file_regression import FileRegressionFixture
-
-from impact88.mechanics import native
-
-LONGEST = (
-    "comparison",
-    "causes",
-    "scan",
-    "desk_browser",
-    "desk",
-    "scan_pages",
-    "installed",
-    "fuzz",
-    "figures",
-    "verification",
-    "reconstruction",
-    "reading",
-    "labels",
-    "listing_copies",
-    "replay_scenes",
-    "native",
-    "collision_report",
-    "solve",
-    "witness",
-    "readme",
-    "stability",
-    "oracle",
-    "verdicts",
-    "one_case",
-    "sizes",
-    "every_impact",
-    "tables",
-    "files",
-    "doors",
-    "public",
-    "desk_numbers",
-    "schemas",
-    "uncertainty",
-    "units_everywhere",
-    "prepared",
-    "emulator",
-    "bench",
-    "unknowns",
-)
-"""Files of tests that take more than some seconds (``--durations=0`` has the times)."""
 
 LONGER = ("IMPACT88_LONG", "IMPACT88_SWEEP", "IMPACT88_CASES", "IMPACT88_SETS")
 """Environment variables with which what is marked as long is run too."""
@@ -89,14 +41,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the files that take longest first, and leave out what is marked as long; with
-    IMPACT88_SHUFFLE, a number, files and tests in any order: none may need another."""
+    """Leave out what is marked as long; with IMPACT88_SHUFFLE, a number, run tests in any order."""
     if not any(map(os.environ.get, LONGER)):
         for item in items:
             if item.get_closest_marker("long"):
                 item.add_marker(pytest.mark.skip(reason="IMPACT88_LONG is not set"))
-    ranks = {f"test_{name}.py": rank for rank, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: ranks.get(item.path.name, len(LONGEST)))
     if seed := os.environ.get("IMPACT88_SHUFFLE"):
         random.Random(seed).shuffle(items)
 
@@ -129,40 +78,3 @@ def golden_printout(file_regression: FileRegressionFixture) -> Callable[[str, st
         )
 
     return check
-
-
-@pytest.fixture
-def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Verifications without what a page cannot show: it takes a good part of the time, and has
-    tests of its own (`printouts/test_scan.py`)."""
-    from impact88.printouts.judging import beside
-
-    monkeypatch.setattr(beside, "unseen", lambda *given: [])
-
-
-@pytest.fixture
-def brief_search() -> Iterator[None]:
-    """Reconstructions draw from a tenth of the points and search from them once: for tests of what
-    doors show and of two doors that must show the same, not of the bounds themselves."""
-    from impact88.casework.optimization.effort import Effort, granting
-
-    brief = Effort(
-        particles=400,
-        burn_in_moves=8,
-        draws_of_bounds=200,
-        spread_points=200,
-        spread_steps=3,
-        starts=1,
-        rounds=1,
-    )
-    with granting(brief):
-        yield
-
-
-@pytest.fixture(scope="module", params=["compiled", "numpy"])
-def both_machines(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Every test of the module twice: on the compiled machine, and on numpy alone."""
-    if request.param == "compiled" and native.library is None:
-        pytest.skip("built without a C compiler")
-    with native.switched_off() if request.param == "numpy" else nullcontext():
-        yield

@@ -7,10 +7,10 @@ import math
 from pathlib import Path
 
 import pytest
-from cases import CRASH, FILES, IMPOSSIBLE, INTERSECTION, REAR_END, RECORDER
 from commands import command
 
 import impact88
+from cases import CRASH, FILES, IMPOSSIBLE, INTERSECTION, REAR_END, RECORDER
 from impact88.cases.case import Case
 from impact88.report.answers import ALL, ask, scene_case
 from impact88.report.rounding import decimals_with, rounded

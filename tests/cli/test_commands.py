@@ -9,10 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from cases import FILES
 from commands import command
 
 import impact88
+from cases import FILES
 from impact88.cli import COMMANDS, GONE
 from impact88.cli.output import FORMS
 

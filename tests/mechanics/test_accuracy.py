@@ -6,9 +6,9 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
+from populations import POPULATIONS, scenes
 
 from impact88 import UserError, sample, solve
-from impact88.bench.populations import POPULATIONS, scenes
 from impact88.mechanics.errorbound import ROUNDINGS, error_bounds
 from impact88.mechanics.formulas import sine_and_cosine
 from impact88.mechanics.reference import results, thirty_digits

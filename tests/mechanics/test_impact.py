@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from populations import scenes
 
 import impact88
 from impact88 import UserError, evaluate, library, prepared, sample, solve
-from impact88.bench.populations import scenes
 from impact88.mechanics import kernel
 from impact88.mechanics.plan import COMPILED, plan
 from impact88.mechanics.solve import UNUSED_BY_POINTS

@@ -5,10 +5,10 @@ from math import cos, hypot, radians, sin
 
 import numpy as np
 import pytest
+from populations import scenes
 from worked_cases import RUN_1
 
 from impact88 import UserError, evaluate, solve
-from impact88.bench.populations import scenes
 from impact88.mechanics.inverse import complete
 from impact88.mechanics.laws import LAWS, Scale, broken_laws, friction_range, margins
 from impact88.names import COEFFICIENTS, FINAL_STATE, IMPULSES, RESULTS, VELOCITIES

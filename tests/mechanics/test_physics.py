@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from populations import scenes
 from worked_cases import RUN_1, reference_cases, scene_of
 
 from impact88 import solve
-from impact88.bench.populations import scenes
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
 

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from populations import POPULATIONS, scenes
 from routh import judged
 
 from impact88 import sample, solve, status
-from impact88.bench.populations import POPULATIONS, scenes
-from impact88.casework.chapter.staged import collisions
+from impact88.chapter.staged import collisions
 from impact88.status import Status
 
 RUN_1 = sample(1).numbers()

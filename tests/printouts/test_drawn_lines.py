@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from longer import long_but
 
-from impact88.collision.casescene import sample
 from impact88.printouts.scan.cleaning import papers_of
 from impact88.printouts.scan.grid import grids_of
 from impact88.printouts.scan.ink import points_of
 from impact88.printouts.scan.layout import WRAP, Sheet, layout_of
 from impact88.program.run import run
+from impact88.program.scene import sample
 
 ROWS = [row for row in run(sample(1)).page.split("\n") if row.strip()]
 (ANGLES,) = (number for number, row in enumerate(ROWS) if "-19.8" in row)

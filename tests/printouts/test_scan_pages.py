@@ -22,17 +22,13 @@ from captures import ROOT
 from longer import long_but
 from worked_cases import RUN_1
 
-from impact88.collision.casescene import sample
 from impact88.printouts.judging import beside
 from impact88.printouts.judging.judgement import FieldCheck, Status, Verdict
 from impact88.printouts.recovery.replays import run_all
-from impact88.printouts.reporting import examination
 from impact88.printouts.reporting.examination import (
     Examined,
     Verification,
-    _with_ties,
     examine,
-    verify,
 )
 from impact88.printouts.reporting.verification import (
     DOUBTFUL,
@@ -72,6 +68,7 @@ from impact88.printouts.scan.scenes import (
 )
 from impact88.printouts.scan.typeface import READABLE
 from impact88.program.run import run
+from impact88.program.scene import sample
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
@@ -97,7 +94,6 @@ SETTLED = {"identical", "identical_as_read"}
 def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a page cannot show takes a third of the time, and is tested apart."""
     monkeypatch.setattr(beside, "unseen", lambda *given: [])
-    monkeypatch.setattr(examination, "_with_ties", lambda result: result)
 
 
 @cache
@@ -1112,23 +1108,6 @@ def test_a_row_without_a_number_is_where_to_look(monkeypatch) -> None:
     assert "VX, E were not found" in sheets._reason_unread(leaf)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("name", "printed", "altered", "other"),
-    [("PB", "-38.7", "-18.7", "TB 60 (would be 40)"), ("MA", "143.5", "148.5", "")],
-)
-def test_numbers_that_the_page_cannot_tell_apart_are_all_named(
-    name: str, printed: str, altered: str, other: str
-) -> None:
-    """Of the angles PB and TB only the sum enters."""
-    (result,) = verify(run(sample(1)).page.replace(printed, altered))
-    result.fields = [FieldCheck(name, altered, printed, Status.CONTRADICTED)]
-    result.verdict, result.findings = Verdict.DIFFERS, []
-    found = "".join(_with_ties(result).findings)
-    assert bool(found) is bool(other)
-    assert not other or (other in found and f"{name} {altered} (would be {printed})" in found)
-
-
 @pytest.mark.parametrize(
     ("distance", "expected"),
     [
@@ -1232,17 +1211,3 @@ def test_a_letter_unlike_all_is_in_doubt_where_another_is_nearer(
 def test_another_letter_is_one_that_the_page_has_elsewhere(count: int, expected: str) -> None:
     letter = cell("", distance=100.0, other_distance=1.0)
     assert state(dataclasses.replace(letter, other_count=count)) == expected
-
-
-@pytest.mark.long
-def test_a_copy_that_prints_a_scanned_page_is_named(tmp_path) -> None:
-    from impact88.files import packaged_text
-    from impact88.program.copies import ListingCopy
-    from impact88.program.scene import LISTING
-
-    path = str(ROOT / "golden" / "scans" / FEW[0])
-    listing = tmp_path / "office.bas"
-    listing.write_text(packaged_text("impact88.legacy", LISTING))
-    (found,) = examine(path, copy=ListingCopy(str(listing))).results
-    assert found.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
-    assert found.findings[0].endswith("the restored listing prints the same numbers")

@@ -182,9 +182,10 @@ def _stay_at_prompt(apple: Applesoft, terminal: Terminal, args: options.Args) ->
     if terminal.has_person:
         print(BANNER)
     own_files = {os.path.realpath(args.program)} if args.program else set()
+    paper = os.path.realpath(args.printer) if args.printer else ""
 
     def is_disk_command(line: str) -> bool:
-        return not args.no_dos and _disk_command(apple, terminal, own_files)
+        return not args.no_dos and _disk_command(apple, terminal, own_files, paper)
 
     apple.prompt(is_disk_command)
     print()
@@ -216,15 +217,20 @@ def load_program(apple: Applesoft, path: str | None) -> None:
         note("basic", f"{source}: {remark}")
 
 
-def save_program(apple: Applesoft, path: str, own_files: set[str]) -> None:
-    """Write the program as text. Raises UserError for an existing file that is not among
-    ``own_files`` (real paths)."""
-    if os.path.exists(path) and os.path.realpath(path) not in own_files:
+def save_program(apple: Applesoft, path: str, own_files: set[str], paper: str) -> None:
+    """Write the program as text. Raises UserError for the printer's ``paper``, and for an existing
+    file that is not among ``own_files`` (real paths)."""
+    target = os.path.realpath(path)
+    if target not in own_files and (os.path.exists(path) or target == paper):
         raise UserError("was neither loaded nor saved in this session; expected a new file", path)
     text = apple.source()
     with replacing(path) as file:
         file.write(text)
-    note("basic", f"{path}: saved, {text.count(chr(10))} lines")
+    try:
+        is_whole = [*read_program(text).lines] == [*apple.machine.lines()]
+    except UserError:
+        is_whole = False
+    note("basic", f"{path}: {'saved' if is_whole else 'text cannot hold this program as it is'}")
 
 
 def _run_file(apple: Applesoft, terminal: Terminal, is_staying: bool) -> int:
@@ -248,7 +254,7 @@ def _run_file(apple: Applesoft, terminal: Terminal, is_staying: bool) -> int:
     return int(error is not None)
 
 
-def _disk_command(apple: Applesoft, terminal: Terminal, own_files: set[str]) -> bool:
+def _disk_command(apple: Applesoft, terminal: Terminal, own_files: set[str], paper: str) -> bool:
     """Do LOAD and SAVE, which the disk system takes. Returns False for any other line."""
     word, _, name = terminal.last_line.strip().partition(" ")
     word, name = word.upper(), name.strip()
@@ -261,7 +267,7 @@ def _disk_command(apple: Applesoft, terminal: Terminal, own_files: set[str]) -> 
         if word == "LOAD":
             load_program(apple, name)
         else:
-            save_program(apple, name, own_files)
+            save_program(apple, name, own_files, paper)
         own_files.add(os.path.realpath(name))
     except UserError as error:
         note("basic", str(error))

@@ -11,10 +11,10 @@ from typing import Any
 
 import captures
 import pytest
+from commands import command, shell
 from emulation import FUZZ, PROGRAMS
 from hypothesis import example, given
 from hypothesis import strategies as st
-from installed import impact88, process
 from longer import long_but
 
 from impact88.apple.emulator.emulator import Applesoft
@@ -312,33 +312,28 @@ def test_basic_and_verify_load_the_same(tmp_path: Path) -> None:
         path = tmp_path / name
         path.write_bytes(form if isinstance(form, bytes) else form.encode())
         assert ListingCopy(str(path)).changed_lines() == []
-        done = impact88("basic", str(path), "--prompt", input="1,2,3\n4,5,6\nLIST\n")
-        listed = done.stdout[done.stdout.rindex("]LIST") :]
+        done = command("basic", str(path), "--prompt", input="1,2,3\n4,5,6\nLIST\n")
+        listed = done.out[done.out.rindex("]LIST") :]
         assert read_program(listed).lines == lines_of(machine)
 
 
 def test_save_writes_nothing_that_is_in_use(tmp_path: Path) -> None:
-    """What is being read, what is being written, and the printer's paper."""
     typed = tmp_path / "rr.txt"
     typed.write_text(f"10 PRINT 1\nSAVE {typed}\nPRINT 6*7\n")
-    with typed.open() as stdin:
-        done = process("basic", stdin=stdin)
+    done = shell(f"impact88 basic < {typed}")
     assert typed.read_text() == f"10 PRINT 1\nSAVE {typed}\nPRINT 6*7\n"
-    assert "42\n" in done.stdout
-    assert done.stderr.endswith(
-        "rr.txt: is the input or the output of this command; expected another file\n"
-    )
+    assert "42\n" in done.out
+    assert "rr.txt: was neither loaded nor saved in this session" in done.err
     paper = tmp_path / "paper.txt"
-    done = impact88("basic", "--printer", str(paper), input=f"SAVE {paper}\n")
-    assert "is the printer's paper" in done.stderr
+    done = command("basic", "--printer", str(paper), input=f"SAVE {paper}\n")
+    assert "was neither loaded nor saved" in done.err
 
 
 def test_save_says_what_text_cannot_hold(tmp_path: Path) -> None:
     path = tmp_path / "poked.bas"
     poke = "NEW\n10 REM A\nPOKE 2054,9\nPOKE 2056,0\n"
-    done = impact88("basic", input=f"NEW\n10 X=1\nPOKE 2053,120\nSAVE {path}\n{poke}SAVE {path}\n")
-    assert done.stderr.splitlines() == [
-        f"impact88 basic: {path}: text cannot hold line 10 as it is; LOAD makes another",
-        f"impact88 basic: {path}: text cannot hold this program: row 1, column 7: a tab; "
-        "expected characters that an Apple's keys type",
-    ]
+    done = command("basic", input=f"NEW\n10 X=1\nPOKE 2053,120\nSAVE {path}\n{poke}SAVE {path}\n")
+    assert (
+        done.err.splitlines()
+        == [f"impact88 basic: {path}: text cannot hold this program as it is"] * 2
+    )

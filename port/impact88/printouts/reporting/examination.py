@@ -19,15 +19,15 @@ PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*",
 __all__ = ["Examined", "Verdict", "Verification", "examine"]
 
 
-def examine(path: str, *, data: bytes, seed: str = "") -> Examined:
+def examine(path: str, *, data: bytes | None = None, seed: str = "") -> Examined:
     """Verify every printout in a picture or PDF.
 
     Parameters
     ----------
     path : str
         Name of the file in messages.
-    data : bytes
-        The file.
+    data : bytes, optional
+        The file, where it is read already.
     seed : str
         A person's reading of a picture, whose scene is tried without deciding anything.
 
@@ -36,6 +36,10 @@ def examine(path: str, *, data: bytes, seed: str = "") -> Examined:
     Examined
         The verifications, or the error that kept the file from being read.
     """
+    try:
+        data = files.read_bytes(path) if data is None else data
+    except UserError as error:
+        return Examined(path, None, error=str(error))
     examination = Examined(path, sha256(data).hexdigest())
     try:
         from .scanned import verify_pages

@@ -1,1 +1,0 @@
-"""The chapter's other problems: every equation, table and example around the program."""

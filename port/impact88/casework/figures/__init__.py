@@ -1,1 +1,0 @@
-"""Figures (extra `plot`): every drawing the project makes, each in its own module."""

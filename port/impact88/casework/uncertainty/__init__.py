@@ -1,1 +1,0 @@
-"""Values known within limits: bounds, draws, and what drives which result."""

@@ -1,2 +1,0 @@
-"""Other programs against this one: the oracle, test vectors, tables of results, causes of
-differences."""
