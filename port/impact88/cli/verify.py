@@ -2,6 +2,7 @@
 impact88 verify scan.png                          the same of a picture or PDF
 impact88 verify --brief box7/*.txt                verdicts and findings alone
 impact88 verify results.txt --scene crash.toml    inputs of a page with results only
+impact88 verify printout.txt --listing office.bas an office's copy of the listing printed it
 impact88 verify printout.txt --report page.html   a page for the case file
 impact88 run --sample 1 | impact88 verify -       - is standard input
 
@@ -54,6 +55,12 @@ def declare(parser: options.Parser) -> None:
     options.add_set(parser)
     options.add_view(parser)
     parser.add_argument(
+        "--listing",
+        type=options.InputPath,
+        metavar="FILE.bas",
+        help="an office's own copy of the listing, which printed the page",
+    )
+    parser.add_argument(
         "--report", type=options.OutputPath, metavar="FILE.html", help="write a page for the case"
     )
     for name in HEADINGS.values():
@@ -92,8 +99,7 @@ def _verified(
     args: options.Args, name: str, data: bytes, given: Mapping[str, str] | None
 ) -> Iterator[Exhibit]:
     """Print and yield the printouts of a file."""
-    from ..printouts import judge, words
-    from ..printouts.sources import read_text
+    from ..printouts import verify, words
     from ..report.exhibits import PICTURE_STARTS, examine, of_text
 
     if data.startswith(PICTURE_STARTS):
@@ -104,9 +110,10 @@ def _verified(
                 print("\n".join([*_picture_lines(exhibit, args.brief), ""]))
             yield exhibit
         return
-    results = judge(read_text(data, name), given)
-    if not results:
-        raise UserError("no printout found; expected labels and numbers such as MA= 143.5", name)
+    try:
+        results = verify(data, given, args.listing)
+    except UserError as error:
+        raise UserError(str(error).removeprefix("text: "), name) from None
     digest = sha256(data).hexdigest()
     for number, result in enumerate(results, 1):
         if args.json:
