@@ -1,6 +1,6 @@
 """How Sphinx builds the documentation: sphinx-build -W --keep-going port/docs build/docs.
 
-Three directives are this project's own: ``drawing`` draws with ``impact88 figure`` as a page is
+Three directives are this project's own: ``drawing`` draws with ``impact88 report`` as a page is
 built, ``quantities`` lists a table of `impact88.names`, ``bits`` those of STATUS.
 """
 
@@ -20,7 +20,7 @@ from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
 import impact88
-from impact88.interface.commands.cli import main
+from impact88.cli.main import main
 
 project = "impact88"
 author = "the impact88 developers"
@@ -56,13 +56,13 @@ html_css_files = ["wide.css"]
 
 CONSTRUCTED = [
     f"impact88.{name}"
-    for name in "Applesoft Prepared Reconstructions Scene Uncertain".split()
+    for name in "Amount Applesoft Prepared Scene".split()
 ]
 """Classes that are called. Others are returned: their parameters are shown as attributes."""
 
 
 class Drawing(Directive):
-    """A drawing of ``impact88 figure``, given its arguments, with a caption below."""
+    """A drawing of ``impact88 report``, given its arguments, with a caption below."""
 
     required_arguments = 1
     final_argument_whitespace = True
@@ -72,8 +72,8 @@ class Drawing(Directive):
         """Return a figure with the drawing as part of the page."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "drawing.svg"
-            if main(["figure", *shlex.split(self.arguments[0]), "-o", str(path)]) != 0:
-                raise self.error(f"impact88 figure {self.arguments[0]} failed")
+            if main(["report", *shlex.split(self.arguments[0]), "-o", str(path)]) != 0:
+                raise self.error(f"impact88 report {self.arguments[0]} failed")
             svg = path.read_text(encoding="utf-8")
         svg = svg[svg.index("<svg") :]
         figure = nodes.figure(
