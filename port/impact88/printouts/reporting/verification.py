@@ -228,7 +228,6 @@ class Verifications(list[Verification]):
     """
 
 
-
 _IN_JSON = (
     "file",
     "sha256",
