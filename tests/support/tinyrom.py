@@ -1,4 +1,4 @@
-"""A ROM of our own for the tests of `romapple`, assembled here: a prompt, a line reader, and a RUN that
+"""A ROM of our own for the tests of `romapple`: a prompt, a line reader, and a RUN that
 plays back a printout and leaves variables.
 
 It has what `romapple` uses of an Apple II Plus: the reset vector, a keyboard loop, COUT, the
