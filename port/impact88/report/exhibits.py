@@ -147,7 +147,7 @@ def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
         result.verdict is Verdict.DIFFERS,
         {
             "": tuple(sentences),
-            "inputs, as typed into the program": (scene,) if scene else (),
+            "inputs with which it was compared": (scene,) if scene else (),
             "errors that this page could not reveal": tuple(words.unseen_lines(result)),
         },
         result.text[first:end],
