@@ -31,7 +31,7 @@ def test_tolerances_of_a_complete_scene_give_intervals() -> None:
     assert answer.asked == "bounds"
     low, high = answer.intervals["DVA"]
     assert (low, high) == pytest.approx((16.55, 20.67), abs=0.1)  # quantiles that 0.3 published
-    assert answer.found["DVA"].interval == "16.6 .. 20.7"
+    assert answer.found["DVA"].interval == f"{low:.1f} .. {high:.1f}"
     assert answer.found["DVA"].drivers.startswith("E ")
 
 

@@ -132,6 +132,10 @@ class Amount:
         ----------
         reach : float, default 3
             Where a normal ends, in standard deviations.
+
+        Returns
+        -------
+        tuple of float
         """
         if self.kind != "normal":
             return self.low, self.high
@@ -145,8 +149,14 @@ class Amount:
 
         Parameters
         ----------
-        factor, offset : Fraction
-            The map.
+        factor : Fraction
+            The scale.
+        offset : Fraction, default 0
+            Added to the product.
+
+        Returns
+        -------
+        Amount
 
         Examples
         --------

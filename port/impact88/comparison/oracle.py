@@ -32,7 +32,7 @@ def oracle(
     scenes : mapping, or iterable of mapping
         Scenes by the listing's names: decimal texts, or numbers with their shortest digits. M is 6
         (the default) or 4.
-    reference_digits : bool, default True
+    reference : bool, default True
         Compute each result to 30 digits, too (extra ``oracle``).
 
     Returns

@@ -115,6 +115,12 @@ class Verification:
         The whole text, to which places refer.
     span : tuple of int
         First offset of the printout in it, and the end.
+
+    Examples
+    --------
+    >>> (result,) = impact88.verify(impact88.run(impact88.sample(1)).page)
+    >>> result.verdict.name, result.numbers["LOSS"].read
+    ('IDENTICAL', '57.47')
     """
 
     verdict: Verdict
