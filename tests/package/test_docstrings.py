@@ -23,7 +23,7 @@ NOT_ASKED_FOR = {
     "SA01",  # a section See Also
     "SA04",  # a description of each entry of See Also
 }
-NOT_ASKED_OF_MEMBERS = {"EX01", "RT01"}  # examples; what one line of summary says
+NOT_ASKED_OF_MEMBERS = {"EX01", "RT01", "RT03", "PR01"}  # what one line of summary says
 RETURNED = {"Replay"}  # classes that a function makes
 MEMBERS = (staticmethod, classmethod, property, cached_property)
 

@@ -24,6 +24,7 @@ from ..names import (
     PIVOT,
     RESULTS,
     SCENE,
+    VELOCITIES,
     check_names,
     missing,
     quantity,
@@ -43,7 +44,7 @@ BACKWARD = (*SPEEDS, *CHANGES, "E", "MUP", "EM", "WA", "WB", "WAF", "WBF", "LOSS
 ALL = tuple(
     dict.fromkeys(
         (
-            *(*FORWARD, *BACKWARD, *RESULTS),
+            *(*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS),
             *("DVAF", "DVAR", "DVBF", "DVBR", "P", "RR0", "EL", "DT", "CAX", "CAY", "CBX", "CBY"),
         )
     )
