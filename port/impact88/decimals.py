@@ -117,7 +117,7 @@ def negated(text: str) -> str:
     ('2.50', '-3')
     """
     digits = text.strip()
-    return digits[1:].lstrip() if digits.startswith("-") else "-" + digits.removeprefix("+")
+    return digits[1:].lstrip() or "0" if digits.startswith("-") else "-" + digits.removeprefix("+")
 
 
 def _numeral(text: str) -> str:
