@@ -68,20 +68,19 @@ def loaded(digest_function: str, digest: str) -> Any:
     return _library if ask().decode() == digest else None
 
 
-_is_switched_off = False
+_blocks: list[None] = []  # one for each `switched_off` in effect, in any order and thread
 
 
 def is_switched_off() -> bool:
     """Return whether `switched_off` is in effect."""
-    return _is_switched_off
+    return bool(_blocks)
 
 
 @contextmanager
 def switched_off() -> Iterator[None]:
     """Leave everything to numpy, in all threads, for the length of a ``with`` block."""
-    global _is_switched_off
-    before, _is_switched_off = _is_switched_off, True
+    _blocks.append(None)
     try:
         yield
     finally:
-        _is_switched_off = before
+        _blocks.pop()

@@ -136,6 +136,52 @@ def test_shapes_broadcast_and_results_go_into_out():
     assert solve({**g, "MU": np.empty(0)})["VAX"].shape == (0,)
 
 
+def test_pivots_after_the_first_scenes():
+    """Alone in a sweep of MU, whose other columns are numbers."""
+    g = one_scene()
+    mu = np.linspace(0, 1, 600)
+    mu[[300, 599]] = -10
+    for names in ("VAX", "WAF", "PN PT PM", "STATUS VAX"):
+        results = solve({**g, "MU": mu}, names)
+        alone = solve({**g, "MU": -10.0}, names)
+        for i in (300, 599):
+            assert_same_bits({n: x[i] for n, x in results.items()}, alone)
+        assert_same_bits(prepared("MU", names, g)([mu]), results)
+        with library.switched_off():
+            assert_same_bits(solve({**g, "MU": mu}, names), results)
+
+
+def test_out_wherever_its_arrays_lie_in_memory():
+    """Side by side in one block, STATUS of 2 bytes a scene; and overlapping by a byte."""
+    n = 300
+    block = np.zeros(18 * n, np.uint8)
+    g = {**one_scene(), "MU": np.linspace(0, 1, n)}
+    expected = solve(g)
+    for status, speed, loss in ((0, 2, 10), (8, 0, 10), (16, 0, 8)):
+        out = {"STATUS": block[status * n : (status + 2) * n].view(np.uint16)}
+        for name, at in (("VAX", speed), ("LOSS", loss)):
+            out[name] = block[at * n : (at + 8) * n].view(np.float64)
+        assert_same_bits(solve(g, out=out), {name: expected[name] for name in out})
+        with pytest.raises(UserError, match="shares memory"):
+            solve({**g, "MU": out["VAX"]}, out=out)
+    out = {"VAX": block[: 8 * n].view(np.float64), "LOSS": block[8 : 8 + 8 * n].view(np.float64)}
+    with pytest.raises(UserError, match="shares memory"):
+        solve(g, out=out)
+
+
+def test_columns_that_are_not_aligned_or_read_only():
+    g = mixed_scenes(300)
+    expected = solve(g, "VAX STATUS")
+    shifted = {
+        name: np.frombuffer(b"." + x.tobytes(), np.float64, offset=1) for name, x in g.items()
+    }
+    assert_same_bits(solve(shifted, "VAX STATUS"), expected)
+    rows = np.frombuffer(b"." + g["E"].tobytes(), np.float64, offset=1).reshape(1, -1)
+    scene = one_scene()
+    together = solve({**scene, "E": g["E"]}, "VAX")
+    assert_same_bits(prepared("E", "VAX", scene)(rows), together)
+
+
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_threads_and_layouts_change_no_bit(threads):
     g = mixed_scenes(50_000)

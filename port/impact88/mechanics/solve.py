@@ -313,6 +313,8 @@ class Prepared:
             arrays = [np.array(_as_doubles(*x)) for x in zip(self.names, rows, strict=False)]
             _common_shape(dict(zip(self.names, arrays, strict=False)))
             block = np.array(np.broadcast_arrays(*arrays))
+        if not block.flags.aligned:
+            block = block.copy()
         if len(block) != len(self.names):
             raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
         return block
@@ -461,8 +463,8 @@ def _flatten(
             flat[name] = float(array.reshape(()))
             continue
         varying.append(name)
-        if array.ndim != 1 or array.shape != shape or not array.flags.c_contiguous:
-            flat[name] = np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+        if array.ndim != 1 or array.shape != shape or not array.flags.carray:
+            flat[name] = np.require(np.broadcast_to(array, shape), None, "CA").reshape(-1)
     return shape, flat, frozenset(varying)
 
 
