@@ -41,7 +41,7 @@ IMPOSSIBLE = (
 )
 """Bits that no real impact has: it breaks a law. The other bits are remarks: with Table 2's own
 coefficients six of the chapter's eleven staged collisions have more friction than what ends their
-sliding. `mechanics.outcome.broken_laws` decides these bits for arrays of impacts."""
+sliding. `mechanics.laws.margins` gives their distances as numbers."""
 
 RETIRED = {4: "SLIDING_REVERSED", 128: "FRICTION_DRIVES"}
 """Bits of version 0.2 that compared the sliding before and after the impact. Sliding that the

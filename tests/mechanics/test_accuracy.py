@@ -7,9 +7,9 @@ import mpmath
 import numpy as np
 import pytest
 from populations import POPULATIONS, scenes
+from roundings import ROUNDINGS, error_bounds
 
 from impact88 import UserError, sample, solve
-from impact88.mechanics.errorbound import ROUNDINGS, error_bounds
 from impact88.mechanics.formulas import sine_and_cosine
 from impact88.mechanics.reference import results, thirty_digits
 from impact88.names import FINAL_VELOCITIES, RESULTS
@@ -50,6 +50,15 @@ def test_errors_in_roundings_of_the_scene(name):
     worst = errors(g)
     assert max(worst[v] for v in FINAL_VELOCITIES) * ROUNDINGS <= MOST.get(name, 6.0)
     assert max(worst.values()) * ROUNDINGS <= 12.0  # a fifth of the bound that is reported
+
+
+def test_the_bound_where_nothing_is_left_of_a_velocity():
+    """A car before a wall without rebound: what is not 0 is rounding of the velocity before."""
+    g = {**scenes("casework", 1000, 5), "M": np.full(1000, 4.0), "MB": np.full(1000, np.inf)}
+    g |= {name: np.zeros(1000) for name in ("E", "MU", "GA", "UY", "VX", "VY", "WA", "WB")}
+    left = np.abs(solve(g, "VAX")["VAX"])
+    assert 0 < left.max() <= 1e-13
+    assert np.all(left <= error_bounds(g)["VAX"])
 
 
 def test_a_wrong_digit_is_beyond_the_bound():

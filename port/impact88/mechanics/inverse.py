@@ -13,6 +13,7 @@ and each law is one linear equation in P.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import compress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import UserError
 from ..names import FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
-from .solve import POINT, evaluate
+from .solve import BODIES, POINT, evaluate
 
 Floats = NDArray[np.float64]
 Row = list[Any]  # over Pn, Pt and M
@@ -28,8 +29,8 @@ Row = list[Any]  # over Pn, Pt and M
 LAWS = (("E", "PN"), ("MUP", "PT"), ("EM", "PM"))
 """Coefficient and impulse of Equations 15, 16 and 18."""
 GEOMETRY = ("s", "c", "an", "at", "bn", "bt", "ma", "mb", "ia", "ib")
-BODIES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA", "M")
-NO_DELAY: list[Row] = [[0.0] * 3] * 3
+COLUMNS = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA", "M")
+ROW = [0.0] * 3
 
 
 class Completed(NamedTuple):
@@ -83,11 +84,11 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     -29.04 -29.04
     """
     known = {name: np.asarray(value, np.float64) for name, value in known.items()}
-    m = known.setdefault("M", np.array(6.0))
+    m = known.setdefault("M", np.array(BODIES))
     is_point = np.asarray(m == POINT)
     if is_point.all():
         known.update(EM=np.array(0.0))
-    geometry, lacking = evaluate({n: known[n] for n in BODIES if n in known}, GEOMETRY)
+    geometry, lacking = evaluate({n: known[n] for n in COLUMNS if n in known}, GEOMETRY)
     missing = dict.fromkeys(name for names in lacking.values() for name in names)
     pairs = list(zip(VELOCITIES, FINAL_STATE, strict=True))
     missing.update({f"{a} or {b}": None for a, b in (*pairs, *LAWS) if not {a, b} & known.keys()})
@@ -95,71 +96,69 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
         raise UserError(f"missing {', '.join(missing)}")
     late = [early not in known for early in VELOCITIES]
     given = [known[b if is_late else a] for (a, b), is_late in zip(pairs, late, strict=True)]
-    bodies = _Bodies(geometry, is_point)
-    delayed = bodies.compliance(late)
-    impulse = _solve_three(*bodies.laws(given, delayed, known))
-    changes = [_dot(row, impulse) for row in bodies.by_impulse]
-    before = [v - dv if z else v for v, dv, z in zip(given, changes, late, strict=True)]
-    after = [v if z else v + dv for v, dv, z in zip(given, changes, late, strict=True)]
-    values = {**known, **dict(zip(VELOCITIES, before, strict=True))}
-    values.update(zip(FINAL_STATE, after, strict=True))
-    values.update(zip(IMPULSES, impulse, strict=True))
-    values.update(bodies.coefficients(before, after, impulse, known))
-    early = _determinant(bodies.laws(before, NO_DELAY, values)[0])
-    mixed = _determinant(bodies.laws(before, delayed, known)[0])
-    volume = np.log(np.abs(early / mixed))
-    for (coefficient, _), divisor in zip(
-        LAWS, bodies.divisors(before, after, impulse), strict=True
-    ):
-        if coefficient not in known:
+    contact = _Contact(geometry, is_point)
+    delayed = contact.compliance(late)
+    rows, right = contact.laws(contact.relative(given), delayed, known)
+    impulse = _solve_three(rows, right)
+    values = {**known, **dict(zip(IMPULSES, impulse, strict=True))}
+    for (before, after), is_late, row in zip(pairs, late, contact.by_impulse, strict=True):
+        if is_late:
+            values[before] = known[after] - _dot(row, impulse)
+        else:
+            values[after] = known[before] + _dot(row, impulse)
+    g = contact.relative([values[name] for name in VELOCITIES])
+    separation = contact.relative([values[name] for name in FINAL_STATE])
+    twist = separation[2] + impulse[2] * contact.by_moment
+    quotients = ((-separation[0], g[0]), (impulse[1], impulse[0]), (separation[2], twist))
+    volume = -np.log(np.abs(_determinant(rows)))
+    for (name, _), (dividend, divisor) in zip(LAWS, quotients, strict=True):
+        if name not in known:
+            values[name] = dividend / divisor
             volume = volume - np.log(np.abs(divisor))
-    return Completed(values, volume)
+    values["mu"] = mu = values["MUP"]
+    values["MU"] = np.where((g[1] > 0.0) & (mu != PIVOT), -mu, mu)
+    forward, _ = contact.laws(g, [ROW, ROW, ROW], values)
+    return Completed(values, volume + np.log(np.abs(_determinant(forward))))
 
 
-class _Bodies:
-    """Two bodies in contact: how impulses change velocities."""
+class _Contact:
+    """Two bodies in contact: how velocities and impulses act on each other."""
 
     def __init__(self, geometry: Mapping[str, Any], is_point: NDArray[np.bool_]) -> None:
         s, c, an, at, bn, bt, ma, mb, ia, ib = (geometry[name] for name in GEOMETRY)
         self.is_point = is_point
         if is_point.any():  # their spins pass through
             ia, ib = (np.where(is_point, 0.0, x) for x in (ia, ib))
-        # changes of the six velocities by a unit of each impulse
-        self.by_impulse: list[Row] = [
-            [c * ma, -s * ma, 0.0],
-            [s * ma, c * ma, 0.0],
-            [an * ia, at * ia, ia],
-            [-c * mb, s * mb, 0.0],
-            [-s * mb, -c * mb, 0.0],
-            [bn * ib, bt * ib, -ib],
-        ]
-        # relative velocities along n and t, and of the spins
-        self.relative: list[Row] = [
+        # relative velocities along n and t, and of the spins, by unit velocities
+        self.by_velocity: list[Row] = [
             [c, s, an, -c, -s, bn],
             [-s, c, at, s, -c, bt],
             [0.0, 0.0, 1.0, 0.0, 0.0, -1.0],
         ]
+        # changes of velocities by unit impulses
+        self.by_impulse: list[Row] = [
+            [x if type(x) is float and x == 0.0 else x * inverse for x in column]
+            for *column, inverse in zip(*self.by_velocity, (ma, ma, ia, mb, mb, ib), strict=True)
+        ]
         self.full = self.compliance([True] * 6)
         self.by_moment = ia + ib
+
+    def relative(self, velocities: Sequence[Any]) -> Row:
+        """Return the relative velocities along n and t, and of the spins."""
+        return [_dot(row, velocities) for row in self.by_velocity]
 
     def compliance(self, chosen: Sequence[bool]) -> list[Row]:
         """Return the changes of the relative velocities by unit impulses, through the chosen
         velocities."""
-        places = [k for k in range(6) if chosen[k]]
-        if not places:
-            return NO_DELAY
-        return [
-            [sum(row[k] * self.by_impulse[k][p] for k in places) for p in range(3)]
-            for row in self.relative
-        ]
+        rows = [list(compress(row, chosen)) for row in self.by_velocity]
+        columns = [*zip(*compress(self.by_impulse, chosen), strict=True)] or [(), (), ()]
+        return [[_dot(row, column) for column in columns] for row in rows]
 
-    def laws(
-        self, velocities: Sequence[Any], delayed: list[Row], known: Mapping[str, Any]
-    ) -> tuple[list[Row], Row]:
+    def laws(self, g: Row, delayed: list[Row], known: Mapping[str, Any]) -> tuple[list[Row], Row]:
         """Return Equations 15, 16 and 18 as rows over the impulses, and their right sides.
 
-        ``delayed``: the compliance through velocities that are known after the impact."""
-        g = [_dot(row, velocities) for row in self.relative]
+        ``g``: the relative velocities of those given; ``delayed``: the compliance through those
+        that are given after the impact."""
         rows: list[Row] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
         right: Row = [known.get(name, 0.0) for name in IMPULSES]
         later = [
@@ -188,25 +187,6 @@ class _Bodies:
             ]
             right[2] = np.where(self.is_point, 0.0, right[2])
         return rows, right
-
-    def divisors(self, before: Sequence[Any], after: Sequence[Any], impulse: Row) -> Row:
-        """Return what E, MUP and EM are divided by where they follow from velocities."""
-        spin = after[2] - after[5]
-        return [_dot(self.relative[0], before), impulse[0], spin + impulse[2] * self.by_moment]
-
-    def coefficients(
-        self, before: Sequence[Any], after: Sequence[Any], impulse: Row, known: Mapping[str, Any]
-    ) -> dict[str, Any]:
-        """Return E, MUP, EM, MU and mu."""
-        gt = _dot(self.relative[1], before)
-        above = [-_dot(self.relative[0], after), impulse[1], after[2] - after[5]]
-        below = self.divisors(before, after, impulse)
-        values: dict[str, Any] = {}
-        for (coefficient, _), x, y in zip(LAWS, above, below, strict=True):
-            values[coefficient] = known[coefficient] if coefficient in known else x / y
-        values["mu"] = mu = values["MUP"]
-        values["MU"] = np.where((gt > 0.0) & (mu != PIVOT), -mu, mu)
-        return values
 
 
 def _dot(row: Sequence[Any], column: Sequence[Any]) -> Any:

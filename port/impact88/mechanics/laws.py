@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..status import Status
-from .formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE, NO_MOMENT
+from .formulas import E_MAX, E_MIN, EM_MAX, EM_MIN
 from .solve import POINT, evaluate
 
 Floats = NDArray[np.float64]
@@ -23,52 +22,17 @@ Floats = NDArray[np.float64]
 FRICTION_ALLOWANCE = 0.2  # on either side of friction's range, as a fraction of the range
 FRICTION_OFFSET = 0.1  # and this much more; Table 2 needs both
 MAX_FRICTION = 10.0  # where nothing ends the sliding; MU = -10 is the listing's pivot
-COEFFICIENT_TOLERANCE = 1e-9  # E and EM that follow from velocities have their rounding
 
 
-class Law(NamedTuple):
-    """One condition.
-
-    Parameters
-    ----------
-    condition : str
-        What holds in a possible impact.
-    broken : str
-        What would be the case otherwise: an interval may end "where" this begins.
-    bit : Status or None
-        The bit of STATUS that reports it.
-    """
-
-    condition: str
-    broken: str
-    bit: Status | None
-
-
-LAWS = {
-    "approach": Law(
-        "the contact points approach", "the vehicles would not approach", Status.SEPARATING
-    ),
-    "push": Law("the normal impulse pushes", "the vehicles would pull", Status.PULLING),
-    "energy": Law("no kinetic energy is gained", "energy would be gained", Status.ENERGY_GAINED),
-    "E": Law(
-        f"E lies from {E_MIN:g} to {E_MAX:g}",
-        f"E would leave {E_MIN:g} ... {E_MAX:g}",
-        Status.E_OUT_OF_RANGE,
-    ),
-    "EM": Law(
-        f"EM lies from {EM_MIN:g} to {EM_MAX:g}",
-        f"EM would leave {EM_MIN:g} ... {EM_MAX:g}",
-        Status.EM_OUT_OF_RANGE,
-    ),
-    "friction": Law(
-        "P_t/P_n lies between 0 and what ends the sliding, "
-        f"{FRICTION_ALLOWANCE:.0%} of that and {FRICTION_OFFSET:g} more on either side, and within "
-        f"{MAX_FRICTION:g}",
-        "friction would reverse the sliding",
-        None,
-    ),
+BROKEN = {
+    "approach": "the vehicles would not approach",
+    "push": "the vehicles would pull",
+    "energy": "energy would be gained",
+    "E": f"E would leave {E_MIN:g} ... {E_MAX:g}",
+    "EM": f"EM would leave {EM_MIN:g} ... {EM_MAX:g}",
+    "friction": "friction would reverse the sliding",
 }
-"""The conditions by name."""
+"""Condition -> what would be the case where it is violated: an interval may end there."""
 
 
 class Scale(NamedTuple):
@@ -81,51 +45,6 @@ class Scale(NamedTuple):
 
 
 UNIT_SCALE = Scale()
-
-
-@np.errstate(all="ignore")
-def broken_laws(known: Mapping[str, ArrayLike]) -> NDArray[np.uint16]:
-    """Return the conditions that impacts violate, as bits of STATUS (`impact88.status.IMPOSSIBLE`).
-
-    Parameters
-    ----------
-    known : mapping of str to float or array_like
-        What is known of the impacts, as in `evaluate`. A condition that cannot be decided for lack
-        of a value is not violated.
-
-    Returns
-    -------
-    ndarray of uint16
-        The bits, 0 for a possible impact.
-
-    Examples
-    --------
-    >>> scene = impact88.sample(1).numbers()
-    >>> broken_laws({**scene, "E": [0.1, -0.1]}).tolist()
-    [0, 16]
-    """
-    shape = np.broadcast_shapes(*(np.shape(value) for value in known.values()))
-    unknown = np.full(shape, np.nan)
-    names = ("gn", "PN", "EL", "KI", "E", "EM")
-    values = evaluate(known, names)[0]
-    gn, pn, lost, initial, e, em = (values.get(name, unknown) for name in names)
-    is_point = np.asarray(known.get("M", 6.0)) == POINT
-    conditions = {
-        "approach": gn >= 0.0,
-        "push": pn < 0.0,
-        "energy": -2.0 * lost > ENERGY_TOLERANCE * initial,
-        "E": _is_outside(e, E_MIN, E_MAX),
-        "EM": _is_outside(em, EM_MIN, EM_MAX) & (em != NO_MOMENT) & ~is_point,
-    }
-    bits = np.zeros(shape, np.uint16)
-    for name, condition in conditions.items():
-        bits |= np.where(condition, int(LAWS[name].bit or 0), 0).astype(np.uint16)
-    return bits
-
-
-def _is_outside(value: Any, low: float, high: float) -> Any:
-    """Return where a coefficient is outside its range by more than rounding; False for NaN."""
-    return (value < low - COEFFICIENT_TOLERANCE) | (value > high + COEFFICIENT_TOLERANCE)
 
 
 @np.errstate(all="ignore")
@@ -144,7 +63,7 @@ def margins(
     Returns
     -------
     dict of str to tuple of ndarray
-        Name in `LAWS` -> one margin, or those of the lower and the upper end: 0 at the end,
+        Name in `BROKEN` -> one margin, or those of the lower and the upper end: 0 at the end,
         negative where the condition is violated, in units of ``scale``. They are differences
         without a quotient, so that they are smooth where an impulse or an approach vanishes. A
         condition that cannot be decided for lack of a value is absent; so is EM for point masses.

@@ -464,7 +464,7 @@ def _flatten(
             continue
         varying.append(name)
         if array.ndim != 1 or array.shape != shape or not array.flags.carray:
-            flat[name] = np.require(np.broadcast_to(array, shape), None, "CA").reshape(-1)
+            flat[name] = np.require(np.broadcast_to(array, shape), None, ("C", "A")).reshape(-1)
     return shape, flat, frozenset(varying)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..cases.units import PLAIN, View
-from ..mechanics.laws import LAWS
+from ..mechanics.laws import BROKEN
 from ..names import quantity
 from .answer import CONTRADICTION, MAX_NAMED, Reconstruction, Test
 from .impacts import SPEEDS
@@ -109,7 +109,7 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     conditions = []
     for name in result.broken:
         amount = result.values.get(CONDITIONS.get(name, ""), None)
-        words = LAWS[name].broken if name in LAWS else f"{name} would be the other one"
+        words = BROKEN.get(name, f"{name} would be the other one")
         if amount is not None and result.verdict == "impossible":
             words += f" ({CONDITIONS[name]} {number(CONDITIONS[name], amount, view)})"
         conditions.append(words)

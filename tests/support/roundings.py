@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SPIN, VELOCITY
-from .solve import POINT, solve
+from impact88 import solve
+from impact88.mechanics.solve import POINT
+from impact88.names import FINAL_VELOCITIES, PIVOT, RESULTS, SPIN, VELOCITY
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +22,7 @@ UNIT = 2.0**-53  # unit roundoff: the largest relative change by rounding to a d
 ROUNDINGS = 64.0  # of every number of the scene; eight times the most seen in the six velocities
 STEP = 2.0**-36  # relative change: far above rounding, far below the nearest singularity tried
 VELOCITY_RESULTS = tuple(name for name, row in RESULTS.items() if row.unit == VELOCITY)
+INITIAL_VELOCITIES, INITIAL_SPINS = ("UX", "UY", "VX", "VY"), ("WA", "WB")
 SPIN_RESULTS = tuple(name for name, row in RESULTS.items() if row.unit == SPIN)
 
 
@@ -85,11 +87,13 @@ def error_bounds(
     values, change = solve(columns, names), movements(columns, names)
     size = {name: np.fmax(change[name], np.abs(values[name])) for name in names}
     spins = np.asarray(columns.get("M", 6.0)) != POINT
-    for group, final in (
-        (VELOCITY_RESULTS, FINAL_VELOCITIES[:4]),
-        (SPIN_RESULTS, FINAL_VELOCITIES[4:]),
+    for group, initial, final in (
+        (VELOCITY_RESULTS, INITIAL_VELOCITIES, FINAL_VELOCITIES[:4]),
+        (SPIN_RESULTS, INITIAL_SPINS, FINAL_VELOCITIES[4:]),
     ):
         largest = np.max([size[name] for name in final], axis=0)
+        for name in initial:
+            largest = np.fmax(largest, np.abs(np.asarray(columns[name], np.float64)))
         for name in group:
             if name in size:
                 shared = largest if group is VELOCITY_RESULTS else np.where(spins, largest, 0.0)
