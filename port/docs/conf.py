@@ -1,17 +1,14 @@
 """How Sphinx builds the documentation: sphinx-build -W --keep-going port/docs build/docs.
 
-Three directives are this project's own: ``drawing`` draws with ``impact88 report`` as a page is
-built, ``quantities`` lists a table of `impact88.names`, ``bits`` those of STATUS.
+Two directives are this project's own: ``quantities`` lists a table of `impact88.names`, ``bits``
+those of STATUS.
 """
 
 from __future__ import annotations
 
 import re
-import shlex
-import tempfile
 from collections.abc import Sequence
 from itertools import pairwise
-from pathlib import Path
 
 from docutils import nodes
 from docutils.parsers.rst import Directive
@@ -20,7 +17,6 @@ from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
 import impact88
-from impact88.cli.main import main
 
 project = "impact88"
 author = "the impact88 developers"
@@ -54,36 +50,8 @@ html_show_copyright = False
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
 
-CONSTRUCTED = [
-    f"impact88.{name}"
-    for name in "Amount Applesoft Prepared Scene".split()
-]
+CONSTRUCTED = [f"impact88.{name}" for name in "Amount Applesoft Prepared Scene".split()]
 """Classes that are called. Others are returned: their parameters are shown as attributes."""
-
-
-class Drawing(Directive):
-    """A drawing of ``impact88 report``, given its arguments, with a caption below."""
-
-    required_arguments = 1
-    final_argument_whitespace = True
-    has_content = True
-
-    def run(self) -> Sequence[nodes.Node]:
-        """Return a figure with the drawing as part of the page."""
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "drawing.svg"
-            if main(["report", *shlex.split(self.arguments[0]), "-o", str(path)]) != 0:
-                raise self.error(f"impact88 report {self.arguments[0]} failed")
-            svg = path.read_text(encoding="utf-8")
-        svg = svg[svg.index("<svg") :]
-        figure = nodes.figure(
-            "", nodes.raw("", svg, format="html"), classes=["drawing"], align="center"
-        )
-        caption = nodes.caption()
-        children, _ = self.state.inline_text(" ".join(self.content), self.lineno)
-        caption += children
-        figure += caption
-        return [figure]
 
 
 class Quantities(Directive):
@@ -166,7 +134,6 @@ def documented(
 
 def setup(app: Sphinx) -> None:
     """Add this project's directives, and names of languages that Pygments lacks."""
-    app.add_directive("drawing", Drawing)
     app.add_directive("quantities", Quantities)
     app.add_directive("bits", Bits)
     app.add_lexer("csv", TextLexer)

@@ -43,7 +43,8 @@ def page_name(page: Path) -> str:
 
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p, "console")], ids=page_name)
 def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> None:
-    (tmp_path / "legacy").symlink_to(ROOT / "legacy")
+    for folder in ("legacy", "golden"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
     for name, text in FILE.findall(page.read_text("utf-8")):
         (tmp_path / name).write_text(text, "utf-8")
     for block in blocks(page, "console"):
