@@ -202,9 +202,9 @@ def test_frames_give_arrays(kind):
         "IB": [1],
         "UX": [3],
         "UY": [4],
-        "WA": [0],
         "VX": [0],
         "VY": [2],
+        "WA": [0],
         "WB": [0],
     }
     g = mixed_scenes(60)

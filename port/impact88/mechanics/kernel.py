@@ -28,7 +28,6 @@ Floats = NDArray[np.float64]
 STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the second-level cache
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
 MAX_BLOCK = 1 << 25  # bytes; the C library maps larger arrays anew each time, page by page
-ARMS = ("arm_direction_a", "arm_direction_b", "lever_arm_a", "lever_arm_b", "contact_offsets")
 NOT_FINITE = 64.0
 SHARED = "out: a result shares memory with a column or another result"
 FINITE, ANY_SIZE, BITS, RAW = range(4)  # kinds of results in `machine.c`
@@ -64,8 +63,6 @@ class Kernel:
         Names of the inputs that have a number for each scene.
     checked : bool
         Whether results are made NaN where a scene cannot be used, or are not finite.
-    armless : bool, default False
-        Whether DA and DB are 0 in all scenes: no arm varies then.
     """
 
     def __init__(
@@ -74,7 +71,6 @@ class Kernel:
         wanted: tuple[str, ...],
         varying: frozenset[str],
         checked: bool,
-        armless: bool = False,
     ) -> None:
         self.fixed = [name for name in plan.inputs if name not in varying]
         self.changing = [name for name in plan.inputs if name in varying]
@@ -86,7 +82,7 @@ class Kernel:
         each: list[tuple[str, int]] = []
         for name, guard in plan.steps:
             formula = FORMULAS[name]
-            if changing.isdisjoint(formula.takes) or (armless and name in ARMS):
+            if changing.isdisjoint(formula.takes):
                 once.append((name, 0))  # a later strip may have the pivots that the first lacks
             else:
                 each.append((name, guard))

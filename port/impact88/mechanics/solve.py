@@ -98,7 +98,7 @@ def solve(
     wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
     given = _read_columns(columns, needed)
     shape, inputs, varying = _flatten(given)
-    kernel = _kernel(wanted, varying, _is_armless(inputs))
+    kernel = _kernel(wanted, varying)
     places = addresses([inputs[name] for name in kernel.changing])
     if out is None:
         arrays, starts = kernel.new_results(shape)
@@ -262,12 +262,7 @@ class Prepared:
             if np.size(value) != 1:
                 raise UserError(f"{name} has {np.size(value)} numbers; expected one that stays")
             self._scene[name] = float(np.reshape(value, ()))
-        self._prepare()
-
-    def _prepare(self) -> None:
-        """Plan the computation, and find the addresses of what stays."""
-        used = frozenset(self.names) & _needed_columns(self.results)[1].keys()
-        self._kernel = Kernel(plan((*self.results, "fit")), self.results, used, True)
+        self._kernel = _kernel(self.results, frozenset(names).intersection(needed))
         self._rows = [self.names.index(name) for name in self._kernel.changing]
         self._fixed = np.array([self._scene[name] for name in self._kernel.fixed])
         start = address(self._fixed)
@@ -319,20 +314,15 @@ class Prepared:
             raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
         return block
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Return what another process needs: no addresses."""
-        return {"names": self.names, "results": self.results, "_scene": self._scene}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Restore what `__getstate__` returned."""
-        self.__dict__.update(state)
-        self._prepare()
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what another process makes an equal function of: no addresses."""
+        return Prepared, (self.names, self.results, self._scene)
 
 
 @lru_cache(maxsize=512)
-def _kernel(wanted: tuple[str, ...], varying: frozenset[str], armless: bool) -> Kernel:
+def _kernel(wanted: tuple[str, ...], varying: frozenset[str]) -> Kernel:
     """Return the computation of checked results."""
-    return Kernel(plan((*wanted, "fit")), wanted, varying, True, armless)
+    return Kernel(plan((*wanted, "fit")), wanted, varying, True)
 
 
 @lru_cache(maxsize=512)
@@ -478,10 +468,3 @@ def _common_shape(arrays: Mapping[str, Any]) -> tuple[int, ...]:
     except ValueError:
         sizes = ", ".join(f"{n} {x.shape}" for n, x in arrays.items() if x.shape)
         raise UserError(f"columns do not broadcast together: {sizes}") from None
-
-
-def _is_armless(inputs: Mapping[str, Any]) -> bool:
-    """Return whether DA and DB are the number 0, where they count."""
-    return all(
-        type(x) is float and x == 0.0 for x in (inputs.get("DA", 0.0), inputs.get("DB", 0.0))
-    )
