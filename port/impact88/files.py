@@ -377,17 +377,3 @@ def packaged_bytes(package: str, name: str) -> bytes:
 def packaged_text(package: str, name: str) -> str:
     """Return the text of a data file installed with this package."""
     return decode(packaged_bytes(package, name), name)
-
-
-def files_of(folder: Any, name: str) -> list[Any]:
-    """Return the files of a folder's subfolder by name, as paths to read from.
-
-    A wheel holds a subfolder of many small files as one archive beside its place.
-    """
-    import zipfile
-
-    files = folder.joinpath(name)
-    archive = folder.joinpath(f"{name}.zip")
-    if not files.is_dir() and archive.is_file():
-        files = zipfile.Path(io.BytesIO(archive.read_bytes()))
-    return sorted((file for file in files.iterdir() if file.is_file()), key=lambda file: file.name)

@@ -37,5 +37,5 @@ def test_a_public_name_exists_and_has_a_docstring(name: str) -> None:
 
 def test_completion_lists_public_names_only() -> None:
     assert dir(impact88) == sorted(impact88.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'files_of'"):
-        _ = impact88.files_of
+    with pytest.raises(AttributeError, match="no attribute 'no_such_name'"):
+        _ = impact88.no_such_name

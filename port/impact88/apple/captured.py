@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
-from ..files import files_of
 from .applesoft import decimaltext, functions, real
 from .applesoft.errorcodes import ApplesoftError
 
@@ -61,14 +60,14 @@ def rows(folder: Any, name: str) -> list[dict[str, Any]]:
 def calls(folder: Any) -> dict[str, list[list[str]]]:
     """Return the captured calls of the arithmetic by file: operation, operands, extension,
     result."""
-    files = [file for file in files_of(folder, ARITHMETIC) if file.name.endswith(".tsv.gz")]
+    files = [file for file in _files(folder, ARITHMETIC) if file.name.endswith(".tsv.gz")]
     return {f.name.partition(".")[0]: [row.split("\t") for row in _lines(f)] for f in files}
 
 
 def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
     """Yield the captured programs, then the fuzz programs: kind, name, texts by ending."""
     files: dict[str, dict[str, str]] = {}
-    for file in files_of(folder, PROGRAMS):
+    for file in _files(folder, PROGRAMS):
         name, _, ending = file.name.rpartition(".")
         if ending in ENDINGS:
             files.setdefault(name, {})[ending] = file.read_bytes().decode("latin-1")
@@ -76,6 +75,10 @@ def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
     for row in rows(folder, FUZZ):
         texts = zip(ENDINGS, (row["program"], row["keyboard"], row["output"]), strict=False)
         yield FUZZ, row["name"], dict(texts)
+
+
+def _files(folder: Any, name: str) -> list[Any]:
+    return sorted(folder.joinpath(name).iterdir(), key=lambda file: file.name)
 
 
 def _lines(file: Any) -> list[str]:

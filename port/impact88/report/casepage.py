@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import UserError, library, printable
 from ..files import replacing
-from ..version import full_version
+from ..version import __version__
 from .answers import Answer
 from .drawing import draw, to_png
 
@@ -100,7 +100,7 @@ def versions() -> str:
     import numpy
 
     python = platform.python_version()
-    return f"impact88 {full_version()}, numpy {numpy.__version__}, Python {python}"
+    return f"impact88 {__version__}, numpy {numpy.__version__}, Python {python}"
 
 
 def drawing_of(answer: Answer) -> tuple[str, str]:
