@@ -247,6 +247,7 @@ def test_values_of_other_types():
             "out, VAX: expected an array of float64",
         ),
         ({"MU": np.ones(3)}, {"out": {"VAX": np.ones(6)[::2]}}, "expected a contiguous array"),
+        ({}, {"results": "VAX KI", "out": {"KI": np.ones(())}}, "out lacks VAX; expected an array"),
     ],
 )
 def test_input_that_cannot_be_used(columns, arguments, message):
@@ -287,6 +288,17 @@ def test_evaluate_at_small_and_large_sizes_by_both_ways():
     values, _ = evaluate({**one_scene(), "VAX": 5.0}, ["XAF", "VAY"])
     assert values["XAF"] != solve(one_scene(), "XAF")["XAF"]
     assert values["VAY"] == solve(one_scene(), "VAY")["VAY"]
+
+
+def test_the_library_stays_off_until_the_last_block_ends():
+    """Blocks of two threads end in any order."""
+    first, second = library.switched_off(), library.switched_off()
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert library.is_switched_off()
+    second.__exit__(None, None, None)
+    assert not library.is_switched_off()
 
 
 def test_a_library_of_other_formulas_is_not_used(monkeypatch):

@@ -131,38 +131,48 @@ class Kernel:
             arrays = {name: arrays[name] for name in self.wanted}
         return arrays, starts
 
-    def run(
+    def compute(
         self,
         inputs: Mapping[str, Any],
-        results: Sequence[Array],
-        starts: Sequence[int],
+        shape: tuple[int, ...],
+        out: Mapping[str, Array] | None,
         threads: int | None,
-    ) -> None:
-        """Compute results of inputs.
+    ) -> dict[str, Array]:
+        """Return results of inputs.
 
         Parameters
         ----------
         inputs : mapping of str to float or ndarray
             The plan's inputs: numbers, and contiguous float64 arrays of one length where they vary.
-        results : sequence of ndarray
-            Contiguous arrays of that size to write into.
-        starts : sequence of int
-            The addresses of the inputs that vary, in the order of `changing`, and of the results.
+        shape : tuple of int
+            The shape of the results, of that size.
+        out : mapping of str to ndarray or None
+            Arrays to write the results into; None for new ones.
         threads : int or None
             The number of threads, None for as many as there are processors and work.
         """
-        count = results[0].size
+        places = addresses([inputs[name] for name in self.changing])
+        if out is None:
+            arrays, starts = self.new_results(shape)
+        else:
+            if lacking := [name for name in self.wanted if name not in out]:
+                raise UserError(f"out lacks {' '.join(lacking)}; expected an array for each result")
+            arrays = {name: out[name] for name in self.wanted}
+            starts = check_output(arrays, shape, places)
+        count = math.prod(shape)
         if self.is_compiled:
             numbers = np.array([inputs[name] for name in self.fixed])
             first = address(numbers)
-            self.run_at([*range(first, first + numbers.nbytes, 8), *starts], count, threads)
-            return
-        flat = [array.reshape(-1) for array in results]
+            fixed = range(first, first + numbers.nbytes, 8)
+            self.run_at([*fixed, *places, *starts], count, threads)
+            return arrays
+        flat = [array.reshape(-1) for array in arrays.values()]
         for start in range(0, count, STRIP):
             part = slice(start, start + STRIP)
             values = {name: np.float64(inputs[name]) for name in self.fixed}
             values.update({name: inputs[name][part] for name in self.changing})
             self._run_strip(values, [array[part] for array in flat])
+        return arrays
 
     def run_at(self, starts: Sequence[int], count: int, threads: int | None) -> None:
         """Compute ``count`` scenes by the library, given the addresses of numbers, of arrays and of

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
-from .kernel import FUNCTIONS, Kernel, address, addresses, check_output
+from .kernel import FUNCTIONS, Kernel, address
 from .plan import COMPILED, FORMULAS, QUANTITIES, Plan, plan
 
 Array = NDArray[Any]
@@ -99,13 +99,7 @@ def solve(
     given = _read_columns(columns, needed)
     shape, inputs, varying = _flatten(given)
     kernel = _kernel(wanted, varying)
-    places = addresses([inputs[name] for name in kernel.changing])
-    if out is None:
-        arrays, starts = kernel.new_results(shape)
-    else:
-        arrays = {name: out[name] for name in wanted}
-        starts = check_output(arrays, shape, places)
-    kernel.run(inputs, [*arrays.values()], [*places, *starts], threads)
+    arrays = kernel.compute(inputs, shape, out, threads)
     if shape == () and out is None:
         return {name: array[()] for name, array in arrays.items()}
     return arrays
@@ -164,10 +158,7 @@ def evaluate(
     lacking, kernel, following = _evaluation(names, frozenset(given), varying)
     values: dict[str, Any] = {n: np.float64(x) if type(x) is float else x for n, x in given.items()}
     if kernel is not None:
-        arrays, starts = kernel.new_results(shape)
-        places = addresses([inputs[name] for name in kernel.changing])
-        kernel.run(inputs, [*arrays.values()], [*places, *starts], 1)
-        values.update(arrays)
+        values.update(kernel.compute(inputs, shape, None, 1))
     with np.errstate(all="ignore"):
         for name in following:
             formula = FORMULAS[name]
