@@ -262,7 +262,7 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     """Context that writes a temporary file and renames it to ``path`` when the block succeeds.
 
     ``mode`` is ``"w"`` (text, UTF-8) or ``"wb"``. The bytes are on the disk before the rename. If
-    the block raises, or the process is told to terminate, the temporary file is removed and
+    the block raises, or the process is terminated, the temporary file is removed and
     ``path`` is unchanged. A path that is not a regular file (a terminal, a pipe, /dev/null) is
     written directly. Raises UserError if the place cannot be written to, the disk is full, or the
     file is read-only."""

@@ -1,9 +1,4 @@
-"""The Apple II Plus: its arithmetic and text (`applesoft`), and the machine (`emulator`).
+"""The Apple II Plus: Applesoft's arithmetic and text (`applesoft`), any program (`emulator`).
 
-Needs: nothing but the ground. Core.
-In: decimal texts, Applesoft programs, keys; the captures of a real ROM that it is held against
-(`captured`). Out: five-byte reals, printed text, screens.
-Way: `applesoft.decimaltext`, `applesoft.real`, `applesoft.console`; programs: `emulator.machine`.
-Used by: `program`, which runs the 1988 listing; every wing that reads or prints a number as it
-does; anyone with another Applesoft program (`impact88 basic`). It knows nothing of collisions.
+It knows nothing of collisions. `captured` reads what a real ROM did, in `golden/`.
 """

@@ -54,8 +54,7 @@ def test_every_statement_that_is_done_stands_in_a_captured_program():
         refused = isinstance(does, partial) and does.func == machine.refuse
         assert refused or word in TYPED_ONLY or TOKENS[word] in used, (
             f"{word} is done, and no captured program has it; next step: a program with the ROM's "
-            "own output in golden/programs/, made by impact88 witness --rom FILE --programs "
-            "FOLDER --save FOLDER"
+            "own output in golden/programs/"
         )
 
 

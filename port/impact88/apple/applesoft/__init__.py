@@ -1,1 +1,1 @@
-"""A machine that computes and talks as Applesoft II does; it knows nothing of collisions."""
+"""Applesoft's reals, functions, decimal text and console, as the ROM computes them."""

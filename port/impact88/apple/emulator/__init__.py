@@ -1,1 +1,1 @@
-"""The machine that runs any Applesoft program: memory, screen, keyboard. No collisions here."""
+"""An emulator that runs any Applesoft program: memory, screen, keyboard."""
