@@ -77,11 +77,15 @@ class Slot:
         The label that owns it: "exact", "damaged" or "" for none.
     is_torn : bool
         True if a blank, or a character of something else, is in it.
+    is_bounded : bool
+        True if it ends where the program ends a number: at a blank or the mark printed behind it,
+        before the next label of its row.
     """
 
     glyphs: list[Glyph]
     label: str
     is_torn: bool = False
+    is_bounded: bool = True
 
     @property
     def text(self) -> str:
@@ -247,6 +251,7 @@ class _Reader:
             if anchor.label.start <= before.label.start:
                 reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
             before = anchor
+        self._find_bounds()
         self._split_replies()
         self._split_angles()
         return reading
@@ -371,6 +376,17 @@ class _Reader:
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
 
+    def _find_bounds(self) -> None:
+        """Find the numbers that do not end where the program ends them."""
+        at = {glyph.offset: k for k, glyph in enumerate(self.glyphs)}
+        for name, slot in [*self.reading.slots.items(), *self.reading.repeated]:
+            if name in _MANY:
+                continue
+            behind = self.glyphs[at[slot.glyphs[-1].offset] + 1 :][:1]
+            is_apart = all(glyph.gap or glyph.char in ")%" for glyph in behind)
+            label = _next_label(name)
+            slot.is_bounded = is_apart and (not label or any(j in self.reading.chars for j in label))
+
     def _split_replies(self) -> None:
         """Split the replies into their numbers."""
         for reply, names in REPLIES.items():
@@ -390,7 +406,7 @@ class _Reader:
             others = [word for word in words if five and word not in five]
             if five and not any("-" in chars_of(word) for word in others):  # no sign apart
                 reading.slots |= {
-                    name: Slot(word, "exact") for name, word in zip(ANGLES, five, strict=True)
+                    name: Slot(word, row.label) for name, word in zip(ANGLES, five, strict=True)
                 }
                 reading.foreign += others
                 words = five
@@ -400,8 +416,18 @@ class _Reader:
             words = [*split_at_gaps(slot.glyphs)] if name == "ANGLES" else []
             if len(words) == len(ANGLES):
                 repeated[k : k + 1] = [
-                    (angle, Slot(word, "exact")) for angle, word in zip(ANGLES, words, strict=True)
+                    (angle, Slot(word, slot.label))
+                    for angle, word in zip(ANGLES, words, strict=True)
                 ]
+
+
+@lru_cache(maxsize=len(NAMES))
+def _next_label(name: str) -> list[int]:
+    """Return the cells of the words between a number and the next one of its row."""
+    start = _SLOT_CELLS[name] + 1
+    stop = next((j for j in range(start, len(CELLS)) if CELLS[j].kind != "word"), start)
+    is_last = stop == len(CELLS) or CELLS[stop].kind == "between"
+    return [] if is_last else [*range(start, stop)]
 
 
 def _owner(label: Label) -> str:
@@ -452,14 +478,16 @@ def _join_torn(
 
     Returns what is left.
     """
-    row = [CELLS[j] for j in cells if CELLS[j].row == ROW_OF[name]]
-    if any(cell.kind == "slot" or cell.name == name for cell in row):
+    if any(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells):
         return rest
     count = 0
     for word in split_at_gaps(rest):
+        digits = len(chars_of(word).rstrip(")%"))
         if word[0].gap >= WIDE_GAP or not re.search("[0-9]", chars_of(word)):
             break
-        count += len(word)
+        count += digits
+        if digits < len(word):
+            break
     slot.glyphs += rest[:count]
     slot.is_torn |= count > 0
     return rest[count:]

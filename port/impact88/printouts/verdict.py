@@ -152,6 +152,12 @@ class Word:
         return "".join(CELLS[j].char for j in self.cells)
 
     @property
+    def label(self) -> str:
+        """The letters of all words before the equals sign that the word belongs to."""
+        cells = (CELLS[j] for j in range(self.cells[-1] + 1))
+        return "".join(c.char for c in cells if c.kind == "word" and c.name == self.first.name)
+
+    @property
     def read(self) -> str:
         """The characters that were read."""
         return "".join(glyph.char for glyph in self.glyphs)
@@ -160,10 +166,14 @@ class Word:
     def is_other_label(self) -> bool:
         """True if another word is in the place of a label's word, whole and with its "=".
 
-        It is one of the program's words, or has hardly a letter of the label.
+        It is one of the program's words, or has hardly a letter of the label; what is left of a
+        label that lost letters is no other one.
         """
         is_word = self.read.isascii() and self.read.isalpha() and self.read != self.printed
         if not (is_word and self.is_marked and self.is_whole and self.first.char.isalpha()):
+            return False
+        letters = iter(self.label)
+        if all(char in letters for char in self.read):
             return False
         alike = self.printed + "".join(LOOKALIKES.get(char, "") for char in self.printed)
         shared = sum(char in alike for char in self.read)
@@ -310,11 +320,7 @@ class Comparison:
         if printed in (read, as_printed(read), read.strip("()[]{}")):
             return Kind.DOUBT
         if slot.is_clean:
-            return Kind.UNREAD if self._is_cut(slot, printed) else Kind.NUMBER
-        if slot.is_torn:  # one stray glyph behind a blank
-            *number, last = slot.glyphs
-            if last.gap and chars_of(number) == printed:
-                return Kind.DOUBT
+            return Kind.NUMBER if slot.is_bounded and not self._is_cut(slot, printed) else Kind.UNREAD
         number_match = PRINTED.match(read)
         rest = read[number_match.end() :] if number_match else read
         if read.removesuffix(rest) == printed and not re.search("[0-9]", rest):
@@ -338,7 +344,7 @@ class Comparison:
         """
         row = {other for other in NAMES if ROW_OF[other] == ROW_OF.get(name)}
         is_sure = name not in TWINS or row <= {other for other, _ in self.reading.repeated}
-        return is_sure and slot.is_clean and as_printed(slot.text) != printed
+        return is_sure and slot.is_clean and slot.is_bounded and as_printed(slot.text) != printed
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
@@ -382,7 +388,7 @@ class Comparison:
             words[-1].cells.append(j)
             if j in self.reading.other_labels:
                 words[-1].glyphs = [*self.reading.other_labels[j]]
-                words[-1].is_whole = True
+                words[-1].is_whole = words[-1].glyphs[0].gap > 0
             elif j in self.reading.chars and words[-1].cells[0] not in self.reading.other_labels:
                 words[-1].glyphs.append(self.reading.chars[j])
                 words[-1].is_whole |= words[-1].glyphs[0].gap > 0
@@ -437,7 +443,8 @@ class Comparison:
             return [*findings]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         digits = sum(map(str.isdigit, "".join(f.read for f in findings if f.kind is Kind.FOREIGN)))
-        is_unsure = digits >= MAX_FOREIGN_DIGITS or any(map(self._is_doubtful_input, findings))
+        inputs = [name for name in self.numbers if name in INPUTS]
+        is_unsure = digits >= MAX_FOREIGN_DIGITS or any(map(self._is_doubtful, inputs))
         is_open = any(finding.name in INPUTS for finding in unread)
         is_open |= is_unsure and len(numbers) + len(unread) > MAX_ALTERED
         if self.is_machine_read and not is_open:
@@ -453,12 +460,10 @@ class Comparison:
             for finding in findings
         ]
 
-    def _is_doubtful_input(self, finding: Finding) -> bool:
-        """Return True for an input in doubt that is not just written otherwise."""
-        if finding.kind is not Kind.DOUBT or finding.name not in INPUTS:
-            return False
-        read = reading_text(self.reading, finding.name)
-        return read == finding.printed or as_printed(read) != finding.printed
+    def _is_doubtful(self, name: str) -> bool:
+        """Return True for a number that was not read in one piece behind its exact label."""
+        slot = self.reading.slots.get(name)
+        return not (slot and slot.is_clean and slot.is_bounded)
 
 
 def reading_text(reading: Reading, name: str) -> str:
