@@ -117,8 +117,10 @@ def readings(chars: str) -> dict[str, float]:
             options = [("", RESPELLED), ("+", RESPELLED)]
         elif not options or char == "E":
             options += [(digit, ALIKE) for digit in NUMBER_CHARS if char in LOOKALIKES[digit]]
-            options += [(digit, 2 * ALIKE) for digit in "0123456789" if char == "?"]
-            options.append(("", 2 * ALIKE))
+            if char == "?":
+                options += [(digit, ALIKE) for digit in "0123456789" if digit not in dict(options)]
+            else:  # a mark is rather dirt, a letter rather a digit
+                options.append(("", ALIKE / 2 if not char.isalnum() else 2 * ALIKE))
         elif char in ".-":
             options.append(("", 3 * ALIKE))
         longer = ((text + one, cost + more) for (text, cost), (one, more) in product(ways, options))

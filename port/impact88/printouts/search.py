@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, product
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -21,8 +21,8 @@ from .page import ANGLES, INPUTS, NAMES, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
 
-MAX_CANDIDATES = 5_000
-"""Combinations of readings that are replayed: .05 s."""
+MAX_CANDIDATES = 10_000
+"""Combinations of readings that are replayed: four digits that nobody can read, .1 s."""
 MAX_OPTIONS = 40
 """Texts that an input may be."""
 BEST = 3
@@ -173,13 +173,14 @@ def _combinations(
     columns: Columns, ms: Sequence[tuple[str, float]], count: int
 ) -> Iterator[Candidate]:
     """Yield the cheapest combinations of options."""
-    ways: list[tuple[float, tuple[int, ...]]] = [(cost, (k,)) for k, (_, cost) in enumerate(ms)]
+    costs = np.array([cost for _, cost in ms])
+    ways = np.arange(len(ms))[:, None]
     for options in columns.values():
-        ways = sorted(
-            (cost + option[2], (*way, k))
-            for (cost, way), (k, option) in product(ways, enumerate(options))
-        )[:count]
-    for cost, (m, *way) in ways:
+        sums = np.add.outer(costs, [cost for *_, cost in options]).ravel()
+        order = sums.argsort(kind="stable")[:count]
+        costs = sums[order]
+        ways = np.column_stack([ways[order // len(options)], order % len(options)])
+    for cost, (m, *way) in zip(costs.tolist(), ways.tolist(), strict=True):
         printed: Texts = {}
         typed: Texts = {}
         for (names, options), k in zip(columns.items(), way, strict=True):
