@@ -17,7 +17,10 @@ from hypothesis import strategies as st
 import impact88
 from impact88.errors import UserError
 from impact88.printouts import VERDICTS, Kind, Verdict, Verification, judge, verify, words
+from impact88.printouts.explain import FLOAT32
 from impact88.printouts.words import SENTENCES, verdict_table
+from impact88.program.copies import ListingCopy
+from impact88.program.run import run
 
 PAGE = impact88.run(impact88.sample(1)).page
 BODY = PAGE[PAGE.index("MA=") :]
@@ -139,6 +142,41 @@ def test_lost_numbers_never_differ_and_never_are_identical(number: int) -> None:
             text = page[: spans[k][0]] + page[spans[k + count - 1][1] :]
             for verification in judge(text):
                 assert verification.verdict in (Verdict.INCOMPLETE, Verdict.AS_READ), text
+
+
+@pytest.mark.parametrize("width", [1, 2, 3, 4, 5, 6])
+def test_lost_characters_accuse_only_the_number_that_lost_them(width: int) -> None:
+    numbers = single(BODY).numbers.values()
+    for at in range(width, len(BODY) - width, 31):
+        is_in_number = any(number.start <= at + width and at <= number.stop for number in numbers)
+        for verification in judge(BODY[:at] + BODY[at + width :]):
+            assert is_in_number or verification.verdict is not Verdict.DIFFERS, at
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (" E= 5E-03", " E-03"),
+        ("XB= 14.51 YB=", "XB= 14"),
+        ("VAY= 3.449 (", "VAY= 3("),
+        ("GA\n -19.8", "19.8"),
+        ("KE LOSS=", "KE="),
+        ("VBX=", "V="),
+        ("-03 MU=", "="),
+        ("WB= 0 XB= 14.51", "WB= 014.51"),
+    ],
+)
+def test_what_was_not_read_in_one_piece_accuses_nothing(old: str, new: str) -> None:
+    assert old in BODY
+    verification = single(BODY.replace(old, new, 1))
+    assert verification.verdict in (Verdict.INCOMPLETE, Verdict.AS_READ)
+
+
+@pytest.mark.parametrize("name", ["MA", "E", "LOSS", "VAY", "YBF", "WBF"])
+def test_a_stray_digit_behind_a_number_never_passes(name: str) -> None:
+    stop = single(PAGE).numbers[name].stop
+    verification = single(PAGE[:stop] + " 5" + PAGE[stop:])
+    assert verification.verdict in (Verdict.INCOMPLETE, Verdict.DIFFERS)
 
 
 def test_a_lost_angle_is_missing() -> None:
@@ -264,16 +302,68 @@ def test_results_alone_go_with_given_inputs() -> None:
     assert other.verdict is Verdict.DIFFERS
 
 
-def test_a_page_of_an_offices_copy_is_identical_to_what_the_copy_prints(tmp_path: Path) -> None:
-    path = tmp_path / "office.bas"
-    path.write_text(LISTING.replace("3.14159265", "3.1416"), encoding="utf-8")
-    from impact88.program.copies import ListingCopy
+COPIES = {
+    "another pi": ("3.14159265", "3.1416"),
+    "a renamed label": ('"MA= "', '"MASS A= "'),
+    "a further line": ("640 PRINT", '635 PRINT "OFFICE OF J. HILL"\n640 PRINT'),
+}
 
+
+@pytest.mark.parametrize("name", COPIES)
+def test_a_page_of_an_offices_copy_is_identical_to_what_the_copy_prints(
+    name: str, tmp_path: Path
+) -> None:
+    assert COPIES[name][0] in LISTING
+    path = tmp_path / "office.bas"
+    path.write_text(LISTING.replace(*COPIES[name]), encoding="utf-8")
     page = ListingCopy(str(path)).run(impact88.sample(1)).page
     assert [v.verdict for v in verify(page, listing=path)] == [Verdict.IDENTICAL]
-    assert [v.verdict for v in verify(page)] == [Verdict.DIFFERS]
-    altered = page.replace("VBY= 1", "VBY= 2")
-    assert [v.verdict for v in verify(altered, listing=path)] == [Verdict.DIFFERS]
+    assert [v.verdict for v in verify(page)] != [Verdict.IDENTICAL]
+    altered = page.replace("KE LOSS= 5", "KE LOSS= 6")
+    (verification,) = verify(altered, listing=path)
+    assert [finding.name for finding in verification.findings] == ["LOSS"]
+    assert verification.verdict is Verdict.DIFFERS
+
+
+SCENE = impact88.sample(1)
+OTHER_MU = {**SCENE, "MU": "-" + SCENE["MU"]}
+
+
+def results(page: str) -> str:
+    return page[page.index("INITIAL KE") :]
+
+
+@pytest.mark.parametrize(
+    ("text", "explanation"),
+    [
+        (BODY.replace("3728", "3778"), "line 1: IA 3778 is a slip, or edited later"),
+        (BODY.replace("3.449", "3.559"), "line 18: VAY 3.559 alone is not"),
+        (
+            BODY.replace(results(BODY), results(impact88.run(OTHER_MU).page)),
+            "the other sign of MU (line 400)",
+        ),
+        (
+            BODY.replace(results(BODY), results(impact88.run({**SCENE, "M": "4"}).page))
+            .rstrip()
+            .removesuffix("*****")
+            + " WA= 0 WB= 0\n\n*****\n",
+            "M = 4, for which the program prints no final spins",
+        ),
+        (run(SCENE, FLOAT32).page, "computed in single precision"),
+    ],
+    ids=["an input", "a result", "sign of MU", "M", "single precision"],
+)
+def test_explanations(text: str, explanation: str) -> None:
+    verification = single(text)
+    assert verification.verdict is Verdict.DIFFERS
+    assert explanation in verification.explanation
+    assert ";" not in verification.explanation.replace("; or it is", "").replace("; a slip", "")
+
+
+def test_results_alone_computed_with_another_m() -> None:
+    (verification,) = verify(results(impact88.run({**SCENE, "M": "4"}).page), SCENE)
+    assert verification.verdict is Verdict.DIFFERS
+    assert verification.explanation == "computed with M = 4 (line 350)"
 
 
 @pytest.mark.captures

@@ -17,7 +17,7 @@ from ..program.run import run
 from .findings import Finding, Kind, Verification
 from .page import INPUTS, RESULTS
 from .reader import read_printouts
-from .search import opposite, printed_fields
+from .search import FINAL_SPINS, opposite, printed_fields
 
 MAX_UNEXPLAINED = 0.25
 """Fraction of the numbers that differ which a cause may leave."""
@@ -52,6 +52,8 @@ def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]
     findings = [finding for finding in verification.findings if finding.kind is Kind.NUMBER]
     labels = [finding for finding in verification.findings if finding.kind is Kind.LABEL]
     names = [finding.name for finding in findings if finding.name in RESULTS]
+    if {FINAL_SPINS} == {tuple(finding.name for finding in findings if not finding.printed)}:
+        return "computed with M = 4, for which the program prints no final spins (line 350)"
     if len(names) >= MIN_NUMBERS and verification.scene:
         read = {name: verification.numbers[name].read for name in names}
         for cause, fields, error in _causes(verification):
@@ -81,6 +83,8 @@ def _slip(
             f"line {line}: {finding.name} {finding.read} alone is not what the program prints for "
             f"the inputs ({finding.printed}); a slip, or edited later"
         )
+    if finding.name == "MUP" and finding.read == opposite(finding.printed):
+        return f"line {line}: computed with the other sign of MU (line 400)"
     sentence = (
         f"line {line}: {finding.name} {finding.read} is a slip, or edited later: everything else "
         f"was computed with {finding.printed}"

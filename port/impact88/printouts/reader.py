@@ -385,7 +385,9 @@ class _Reader:
             behind = self.glyphs[at[slot.glyphs[-1].offset] + 1 :][:1]
             is_apart = all(glyph.gap or glyph.char in ")%" for glyph in behind)
             label = _next_label(name)
-            slot.is_bounded = is_apart and (not label or any(j in self.reading.chars for j in label))
+            slot.is_bounded = is_apart and (
+                not label or any(j in self.reading.chars for j in label)
+            )
 
     def _split_replies(self) -> None:
         """Split the replies into their numbers."""
@@ -478,7 +480,10 @@ def _join_torn(
 
     Returns what is left.
     """
-    if any(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells):
+    row = [CELLS[j] for j in cells if CELLS[j].row == ROW_OF[name]]
+    marks = [cell.char for cell in row if cell.name == name]
+    is_mark_lost = not any(glyph.char in marks for glyph in rest)
+    if any(cell.kind == "slot" for cell in row) or (marks and is_mark_lost):
         return rest
     count = 0
     for word in split_at_gaps(rest):

@@ -201,9 +201,9 @@ def _edits(candidate: Candidate, clean: Mapping[str, str], program: Listing) -> 
             texts.append(opposite(typed[name]))
         for rank, other in enumerate(texts):
             yield Candidate(printed, {**typed, name: other}, m, cost + PASSED * (1 + rank / 9))
-        edits = chain(slips(text), slips(clean.get(name, text)))
-        for other, more in edits:
-            total = cost + more + CONTRADICTED * (name in clean)
+        read = clean.get(name, text)
+        for other, more in chain([(read, 0.0)], slips(text), slips(read)):
+            total = cost + more + CONTRADICTED * (name in clean and other != read)
             yield Candidate({**printed, name: other}, {**typed, name: other}, m, total)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import LOOKALIKES, Glyph, chars_of
@@ -82,12 +83,11 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
     if not scenes:
         return _without_scene(reading, missing)
     recovered, *alternatives = scenes
-    comparison = Comparison(reading, recovered.fields, recovered.scene, recovered.ending, given)
+    page = recovered.fields, recovered.scene, recovered.ending
+    layout = program.layout(recovered.scene)
+    own = Comparison(layout, *page) if layout else None
+    comparison = Comparison(reading, *page, given, own)
     findings = comparison.findings()
-    if layout := program.layout(recovered.scene):
-        own = Comparison(layout, recovered.fields, recovered.scene, recovered.ending, {})
-        expected = {_without_place(finding) for finding in own.findings()}
-        findings = [finding for finding in findings if _without_place(finding) not in expected]
     verification = Verification(
         verdict_of(findings),
         recovered.scene,
@@ -114,7 +114,7 @@ def _without_place(finding: Finding) -> tuple[Kind, str, str]:
 def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
     """Return the verdict on a printout that lacks inputs: numbers printed twice may differ."""
     due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
-    comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending, {})
+    comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
     findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
     findings += comparison.text_findings()
     for name, slot in reading.repeated:
@@ -203,6 +203,8 @@ class Comparison:
         The message that ends the program.
     given : mapping of str to str
         Inputs that the page need not have.
+    layout : Comparison, optional
+        That of an office's copy's own page for the scene: what it finds is no finding here.
     """
 
     def __init__(
@@ -211,8 +213,10 @@ class Comparison:
         fields: Mapping[str, str],
         scene: Mapping[str, str],
         ending: str,
-        given: Mapping[str, str],
+        given: Mapping[str, str] = MappingProxyType({}),
+        layout: Comparison | None = None,
     ) -> None:
+        self.layout = layout
         self.reading, self.fields, self.scene = reading, fields, scene
         self.ending = ending.replace(" ", "")
         self.words, self.lost_rows = self._words()
@@ -289,6 +293,9 @@ class Comparison:
         if self.reading.ending != self.ending:
             kind = Kind.LABEL if self.reading.ending else Kind.UNREAD
             findings.append(self.finding(kind, "message", [], self.ending, len(CELLS)))
+        if self.layout:
+            expected = {*map(_without_place, self.layout.findings())}
+            findings = [finding for finding in findings if _without_place(finding) not in expected]
         findings = self._settle(findings)
         return sorted(findings, key=lambda finding: finding.start)
 
@@ -320,7 +327,9 @@ class Comparison:
         if printed in (read, as_printed(read), read.strip("()[]{}")):
             return Kind.DOUBT
         if slot.is_clean:
-            return Kind.NUMBER if slot.is_bounded and not self._is_cut(slot, printed) else Kind.UNREAD
+            return (
+                Kind.NUMBER if slot.is_bounded and not self._is_cut(slot, printed) else Kind.UNREAD
+            )
         number_match = PRINTED.match(read)
         rest = read[number_match.end() :] if number_match else read
         if read.removesuffix(rest) == printed and not re.search("[0-9]", rest):
@@ -328,8 +337,8 @@ class Comparison:
         foreign = len(_NO_NUMBER.findall(re.sub("[(CI{].?[)}]", "O", read)))
         if foreign <= 1 and printed in readings(read):
             return Kind.DOUBT
-        changes = [b for a, b in zip(printed, read, strict=False) if a != b]
-        is_blot = len(printed) == len(read) and len(changes) == 1 and not changes[0].isdigit()
+        ends = [(re.escape(printed[:k]), re.escape(printed[k + 1 :])) for k in range(len(printed))]
+        is_blot = any(re.fullmatch(f"{a}[^0-9]{{1,2}}{b}", read) for a, b in ends)
         return Kind.DOUBT if is_blot else Kind.UNREAD
 
     def _is_cut(self, slot: Slot, printed: str) -> bool:
@@ -448,7 +457,7 @@ class Comparison:
         is_open = any(finding.name in INPUTS for finding in unread)
         is_open |= is_unsure and len(numbers) + len(unread) > MAX_ALTERED
         if self.is_machine_read and not is_open:
-            if _is_readers_work(numbers):
+            if _is_readers_work(numbers, unread):
                 return [_attributed(finding) for finding in findings]
             swaps = [_swap(finding) for finding in numbers]
             is_sure = all(swaps) and len({*swaps}) == len(swaps) <= MAX_ALTERED
@@ -463,7 +472,8 @@ class Comparison:
     def _is_doubtful(self, name: str) -> bool:
         """Return True for a number that was not read in one piece behind its exact label."""
         slot = self.reading.slots.get(name)
-        return not (slot and slot.is_clean and slot.is_bounded)
+        is_clean = bool(slot and slot.is_clean and slot.is_bounded)
+        return not is_clean and not (self.layout and self.layout._is_doubtful(name))
 
 
 def reading_text(reading: Reading, name: str) -> str:
@@ -473,18 +483,19 @@ def reading_text(reading: Reading, name: str) -> str:
 
 def _swap(finding: Finding) -> str:
     """Return the digit printed and the one read in its place; "" for other findings."""
-    pairs = [a + b for a, b in zip(finding.printed, finding.read, strict=False) if a != b]
-    is_swap = len(pairs) == 1 and len(finding.printed) == len(finding.read) and pairs[0].isdigit()
+    read = "".join(finding.read.split())
+    pairs = [a + b for a, b in zip(finding.printed, read, strict=False) if a != b]
+    is_swap = len(pairs) == 1 and len(finding.printed) == len(read) and pairs[0].isdigit()
     return pairs[0] if is_swap else ""
 
 
-def _is_readers_work(numbers: Sequence[Finding]) -> bool:
+def _is_readers_work(numbers: Sequence[Finding], unread: Sequence[Finding]) -> bool:
     """Return True if a machine may have made all of these: each digit for another more than once,
     and a character lost or added in a few."""
-    swaps = [swap for finding in numbers if (swap := _swap(finding))]
+    swaps = [swap for finding in [*numbers, *unread] if (swap := _swap(finding))]
     others = [finding for finding in numbers if not _swap(finding)]
     is_few = len(others) <= MAX_READER_SLIPS and all(map(_is_loss, others))
-    return is_few and all(swaps.count(swap) > 1 for swap in swaps)
+    return is_few and all(swaps.count(swap) > 1 for swap in map(_swap, numbers) if swap)
 
 
 def _is_loss(finding: Finding) -> bool:

@@ -115,7 +115,7 @@ def sentence_of(finding: Finding) -> str:
     return SENTENCES[finding.kind].format(
         name=finding.name.replace("REPLY_", "the reply for M") or "the message",
         read=repr(read[:LONGEST]),
-        printed=finding.printed,
+        printed=finding.printed or "nothing",
         instead=f" ({read[:LONGEST]!r})" if read else "",
         expected=f"; the program prints {finding.printed}" if finding.printed else "",
     )
