@@ -49,9 +49,9 @@ MAX_ANGLE_GLYPHS = 60
 """Characters of the row of angles that are read."""
 MAX_NUMBER = 16
 """Characters of a damaged angle."""
-MAX_PARTS = 11
+MAX_PARTS = 10
 """Readings of each of the five."""
-MAX_ANGLE_ROWS = 150
+MAX_ANGLE_ROWS = 100
 """Ways to read the row of angles."""
 Way = tuple[float, tuple[str, ...]]
 """The first angles of a row, and their cost."""

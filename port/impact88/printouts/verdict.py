@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import LOOKALIKES, Glyph, chars_of
+from .glyphs import LOOKALIKES, Glyph
 from .labels import LABELS
 from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
 from .page import (
