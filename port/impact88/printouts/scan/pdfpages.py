@@ -44,7 +44,7 @@ def render_pages(data: bytes, max_side: int) -> Iterator[Rendered]:
         with the reason in words
     """
     if find_spec("pypdfium2") is None:
-        raise PdfError("PDFs need pypdfium2, which is not installed; pip install 'impact88[pictures]'")
+        raise PdfError("PDFs need pypdfium2, which is not installed; pip install 'impact88[scan]'")
     command = [sys.executable, __file__, str(max_side)]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
