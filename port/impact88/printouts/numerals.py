@@ -16,7 +16,7 @@ from .glyphs import LOOKALIKES
 
 PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0-9]{1,2})?")
 """A number as Applesoft prints it."""
-TYPED = re.compile(r"[-+]?(?=\.?[0-9])[0-9]*\.?[0-9]*(?:E[-+]?[0-9]{1,2})?")
+TYPED = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?")
 """A number as it can be typed."""
 RETYPED = re.compile(r"^[-+]?0.|[.][0-9]*0$|^[-+]?[.]00|^[+]|[.]$|^-?[0-9]{10}")
 """Marks of a number that people wrote: a zero or plus sign in front, zeros behind, no exponent."""
