@@ -156,7 +156,7 @@ def test_constants_fill_and_replace_columns() -> None:
     assert out["VAX"].tolist() == [solve(NUMBERS, "VAX")["VAX"]] * 2
     out, _, _ = solved(scene(2), "VAX", case=Case.of({"MU": "-10"}), replaced=["MU"])
     assert out["VAX"].tolist() == [solve({**NUMBERS, "MU": -10}, "VAX")["VAX"]] * 2
-    assert out["MU"] == ["-10", "-10"]
+    assert out["MU"].tolist() == [-10, -10]
     assert not solved(scene(2), "VAX", case=Case.of({"MU": ""}), replaced=["MU"])[1]
     units = {f"{n} [{_units(n)}]" if _units(n) else n: c for n, c in columns.items() if n != "UX"}
     with pytest.raises(UserError, match="UX = 3 has no unit, and the columns have"):

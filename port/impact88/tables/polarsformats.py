@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import IO, Any
 
 import numpy as np
@@ -74,28 +75,24 @@ def read_excel(path: str) -> Table:
             check_size(path, sum(member.file_size for member in archive.infolist()))
         book = fastexcel.read_excel(path)
         sheets = book.sheet_names[:MAX_SHEETS]
-        heads = {
-            sheet: book.load_sheet(
-                sheet, header_row=None, n_rows=MAX_HEADING_ROW, dtypes="string"
-            ).to_polars()
+        options: dict[str, Any] = {"header_row": None, "n_rows": MAX_HEADING_ROW}
+        rows = [
+            (sheet, at, [str(cell or "").strip() for cell in row])
             for sheet in sheets
-        }
-    best = (0, "", 0)
-    for sheet, head in heads.items():
-        for at, row in enumerate(head.rows()):
-            count = sum(bool(heading_name(cell)[0]) for cell in row if cell)
-            if count > best[0]:
-                best = (count, sheet, at)
-    _, sheet, at = best
-    if not sheet:
+            for at, row in enumerate(
+                book.load_sheet(sheet, dtypes="string", **options).to_polars().rows()
+            )
+        ]
+    sheet, at, texts = max(rows, key=lambda row: _count_names(row[2]), default=("", 0, []))
+    if not _count_names(texts):
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
-    texts = [str(cell or "").strip() for cell in heads[sheet].row(at)]
-    width = max(place for place, text in enumerate(texts, 1) if text)
-    names = check_headings(texts[:width], path)
-    options: dict[str, Any] = {
+    while not texts[-1]:
+        texts.pop()
+    names = check_headings(texts, path)
+    options = {
         "header_row": None,
         "skip_rows": at + 1,
-        "use_columns": list(range(width)),
+        "use_columns": list(range(len(names))),
         "column_names": names,
         "dtype_coercion": "coerce",
     }
@@ -113,6 +110,11 @@ def read_excel(path: str) -> Table:
     return Table(names, blocks(), path, remarks=tuple(remarks))
 
 
+def _count_names(texts: Sequence[str]) -> int:
+    """Return how many texts are headings of quantities."""
+    return sum(bool(heading_name(text)[0]) for text in texts)
+
+
 def _merge_cells(numbers: Any, texts: Any) -> Column:
     """Return a sheet's column: numbers, or texts where a cell is one."""
     if numbers.null_count() == texts.null_count():
@@ -121,44 +123,37 @@ def _merge_cells(numbers: Any, texts: Any) -> Column:
     return [text if number is None else repr(number) for number, text in pairs]
 
 
+def _is_float(column: Column) -> bool:
+    """Return True for an array of floats."""
+    return isinstance(column, np.ndarray) and column.dtype.kind == "f"
+
+
 def frame_of(columns: Mapping[str, Column]) -> Any:
-    """Return columns as a frame; a number that is none is null."""
+    """Return columns as a frame; a number that is none is null, and so is an empty text, which
+    polars would put in quotes."""
     pl = polars()
-    frame = pl.DataFrame(
-        {
-            name: pl.Series(name, column, nan_to_null=True)
-            if isinstance(column, np.ndarray) and column.dtype.kind == "f"
-            else pl.Series(name, _without_empty(column), strict=False)
-            for name, column in columns.items()
-        }
-    )
-    return frame
-
-
-def _without_empty(column: Column) -> Column:
-    """Return a column with None in place of empty texts, which polars would put in quotes."""
-    if isinstance(column, polars().Series) or (
-        isinstance(column, np.ndarray) and column.dtype.kind not in "UO"
-    ):
-        return column
-    return [None if cell == "" else cell for cell in column]
+    series = []
+    for name, column in columns.items():
+        cells = (
+            column.tolist()
+            if isinstance(column, np.ndarray) and column.dtype.kind in "UO"
+            else column
+        )
+        if isinstance(cells, list):
+            cells = [None if cell == "" else cell for cell in cells]
+        series.append(pl.Series(name, cells, strict=False, nan_to_null=_is_float(column)))
+    return pl.DataFrame(series)
 
 
 def frame_of_texts(columns: Mapping[str, Column]) -> Any:
     """Return columns as a frame whose numbers are written in the digits of Python's floats."""
-    pl = polars()
     frame = frame_of(columns)
     for name, column in columns.items():
-        if not (isinstance(column, np.ndarray) and column.dtype.kind == "f"):
-            continue
-        size = np.abs(column)
+        size = np.abs(column) if _is_float(column) else np.zeros(1)
         # polars writes these in another notation
-        odd = np.flatnonzero((size >= 1e16) | ((size < 1e-4) & (size > 0)))
-        if odd.size:
-            texts = frame[name].cast(pl.String).to_list()
-            for at in odd.tolist():
-                texts[at] = repr(float(column[at]))
-            frame = frame.with_columns(pl.Series(name, texts, pl.String))
+        if np.any((size >= 1e16) | ((size < 1e-4) & (size > 0))):
+            texts = [None if math.isnan(x) else repr(x) for x in column.tolist()]
+            frame = frame.with_columns(polars().Series(name, texts))
     return frame
 
 

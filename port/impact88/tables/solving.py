@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
-from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..cases.case import COURSE, MAX_TYPED, OPTIONAL_OF_POINTS, Case
 from ..cases.estimates import estimate
 from ..cases.plausibility import implausible
 from ..cases.units import DIMENSIONS, PLAIN, View, system_using, unit_of
-from ..decimals import exact, to_double, to_doubles, to_text
+from ..decimals import to_double, to_doubles, to_text
 from ..errors import UserError, quoted
 from ..files import replacing
 from ..mechanics.solve import evaluate, solve
@@ -29,6 +29,9 @@ from .textformats import Block, Column, Table, heading_name
 
 Floats = NDArray[np.float64]
 
+INERTIAS = ("MA", "MB", "IA", "IB")
+RESISTANCES = {"UX": "MA", "UY": "MA", "VX": "MB", "VY": "MB", "WA": "IA", "WB": "IB"}
+"""Velocities, each with the mass or inertia that is infinite for a barrier."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """Columns that rows of point masses do not look at."""
 MAX_LISTED = 20  # bad rows kept for the terminal: one screenful
@@ -137,36 +140,30 @@ def solve_table(
     UserError
         For a file that is no table, lacks a column, or cannot be written.
     """
-    format_of(target, target_format)
-    is_applesoft = arithmetic == "applesoft"
-    table = (
-        read_table(source, source_format, encoding, is_applesoft)
-        if isinstance(source, str)
-        else source
-    )
     kind = format_of(target, target_format)
-    solver = Solver(table, results, case, replaced, view, arithmetic, kind == "csv", results_only)
-    solved = Solved(counts=table.counts, remarks=[*table.remarks])
-    extent, position = table.extent
-    with replacing(errors) if errors else nullcontext() as file:
-        writer = csv.writer(file, lineterminator="\n") if file else None
-        if writer:
-            writer.writerow(BadRow._fields)
+    if isinstance(source, str):
+        source = read_table(source, source_format, encoding, arithmetic == "applesoft")
+    solver = Solver(source, results, case, replaced, view, arithmetic, kind == "csv", results_only)
+    solved = Solved(counts=source.counts, remarks=[*source.remarks])
+    extent, position = source.extent
+    with replacing(errors) if errors else nullcontext(io.StringIO()) as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(BadRow._fields)
 
         def blocks() -> Iterator[Mapping[str, Column]]:
-            for block in table.blocks:
+            for block in source.blocks:
                 columns, bad, ended = solver.solve(block)
                 solved.rows += len(block.rows)
                 solved.bad += len(bad)
                 solved.ended += ended
                 solved.listed += bad[: MAX_LISTED - len(solved.listed)]
-                if writer:
+                if errors:
                     writer.writerows(bad)
                 if progress:
                     progress(solved.rows, position() / extent if extent else None)
                 yield columns
             if not solved.rows:
-                yield solver.solve(Block({name: [] for name in table.names}, []))[0]
+                yield solver.solve(Block({name: [] for name in source.names}, []))[0]
 
         write_table(target, blocks(), kind)
     solved.remarks += solver.remarks()
@@ -197,48 +194,49 @@ class Solver:
         as_text: bool = True,
         results_only: bool = False,
     ) -> None:
-        self.table, self.arithmetic, self.as_text = table, arithmetic, as_text
+        self.table, self.as_text = table, as_text
         self.is_applesoft = arithmetic == "applesoft"
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         self.results = tuple(results) or allowed
         check_names(self.results, allowed, f"result of --arithmetic {arithmetic}", "--outputs")
+        case = case or Case.of({}, view=view)
         try:
-            self.headings = _headings_by_name(table.names)
-            self.view = _view(self.headings, view if case is None else case.view)
+            headings = _headings_by_name(table.names)
+            self.view = _view(headings, case.view)
         except UserError as error:
             raise UserError(str(error), table.where) from None
-        self.case = _in_view(case or Case.of({}, view=view), self.view)
-        self.replaced = {name for name in replaced if name in self.case.entries}
-        read_names = [n for n in self.headings if n in SCENE and n not in self.replaced]
-        self.columns = {name: self.headings[name] for name in read_names}
-        self.kept = [
-            heading
+        self.case = case = _in_view(case, self.view)
+        self.replaced = {*replaced} & {*case.entries}
+        self.columns = {n: h for n, h in headings.items() if n in SCENE and n not in self.replaced}
+        self.kept = {
+            heading: name
             for heading in table.names
-            if not (results_only and heading_name(heading)[0] in SCENE)
-        ]
-        self.constants = {n: x for n, x in self.case.numbers.items() if n not in self.columns}
-        self.share = self.case.entries.get("MU") if "MU" not in self.columns else None
-        self.share = self.share if self.share and self.share.share else None
-        followed = {n for n in ("TA", "TB") if self.case.written.get(n) == COURSE}
-        self.computed = {*self.case.estimated, *followed} - {*self.columns}
-        self.computed |= {"MU"} if self.share else set()
-        self._remarks: dict[str, list[Any]] = {}
-        self._leave_out_results()
+            for name, _ in [heading_name(heading)]
+            if not (results_only and name in SCENE)
+        }
+        friction = case.entries.get("MU", PLAIN_FRICTION)
+        self.share = friction.value if friction.share and "MU" not in self.columns else math.nan
+        self.followed = {n for n in ("TA", "TB") if case.written.get(n) == COURSE} - {*self.columns}
+        self.estimated = {n for n in case.estimated if f"M{n[1]}" in self.columns} - {*self.columns}
+        computed = {*self.columns, *self.followed, *self.estimated}
+        computed |= set() if math.isnan(self.share) else {"MU"}
+        self.constants = {n: x for n, x in case.numbers.items() if n not in computed}
+        self._counts: dict[str, tuple[int, int, str]] = {}
+        self._leave_out_results({*computed, *self.constants, *case.estimated, "M"})
 
-    def _leave_out_results(self) -> None:
+    def _leave_out_results(self, present: set[str]) -> None:
         """Leave out results of point masses whose inputs are missing, and fill those that no other
         result uses. Raises UserError where the table lacks another column."""
-        present = {*self.columns, *self.constants, *self.computed, "M"}
-        may_be_points = "M" in self.columns or self.constants.get("M") == 4
+        self.may_be_points = "M" in self.columns or self.constants.get("M") == 4
+        optional = OPTIONAL_OF_POINTS if self.may_be_points else ()
         lacking = [n for n in SCENE if n not in present]
-        if absent := [n for n in lacking if not (may_be_points and n in OPTIONAL_OF_POINTS)]:
+        if absent := [n for n in lacking if n not in optional]:
             message = f"no column {' '.join(absent)}; --set NAME=VALUE gives one for all rows"
             raise UserError(message, self.table.where)
         self.constants |= dict.fromkeys([n for n in lacking if n not in UNUSED_BY_POINTS], 0.0)
-        known = dict.fromkeys(present, 1.0) | {"WA": 0.0, "WB": 0.0, "M": 4.0}
-        self.left_out = (
-            evaluate(known, self.results)[1] if lacking and not self.is_applesoft else {}
-        )
+        scene = dict.fromkeys(present, 1.0) | {"WA": 0.0, "WB": 0.0, "M": 4.0}
+        is_complete = self.is_applesoft or not lacking
+        self.left_out = {} if is_complete else evaluate(scene, self.results)[1]
         self.results = tuple(name for name in self.results if name not in self.left_out)
         if not self.results:
             raise UserError("; ".join(self.remarks()), self.table.where)
@@ -246,267 +244,260 @@ class Solver:
     def remarks(self) -> list[str]:
         """Return the remarks on all rows so far."""
         lines = [f"{name} needs {' '.join(names)}" for name, names in self.left_out.items()]
-        for row, count, text in self._remarks.values():
+        for row, count, text in self._counts.values():
             more = f" and {count - 1:,} more" if count > 1 else ""
             lines.append(f"{self.table.counts} {row:,}{more}: {text}")
         return lines
 
     def solve(self, block: Block) -> tuple[dict[str, Column], list[BadRow], int]:
         """Return a block with its results, its bad rows, and how many rows ended with an error."""
-        reading = _Reading(self, block)
-        self._remark(reading.columns, block)
+        rows = _Rows(self, block)
+        self._remark(rows)
         if self.is_applesoft:
-            results = self._applesoft(reading)
+            results = rows.replay()
             is_error = (results["ERROR"] != "") & (results["ERROR"] != ZERO_DETERMINANT)
         else:
-            solution = solve(reading.columns, self.results)
-            results = {n: np.array(np.broadcast_to(x, reading.count)) for n, x in solution.items()}
-            reading.refuse(results)
-            is_error = np.zeros(reading.count, np.bool_)
-        bad = sorted(reading.bad)
-        empty = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
-        for name, values in results.items():
-            values[bad] = empty.get(name, math.nan)
-        columns = {heading: reading.output_column(heading) for heading in self.kept}
-        for name, values in results.items():
-            is_result = name in RESULTS
-            columns[self.view.heading(name) if is_result else name] = (
-                self.view.shown(name, values) if is_result else values
-            )
+            results = rows.solve()
+            is_error = np.zeros(rows.count, np.bool_)
+        bad = sorted(rows.bad)
         is_error[bad] = False
-        complaints = [BadRow(block.rows[at], *reading.bad[at]) for at in bad]
+        for name, values in results.items():
+            values[bad] = _EMPTY.get(name, math.nan)
+        columns = {heading: rows.output_column(heading) for heading in self.kept}
+        for name, values in results.items():
+            if name in RESULTS:
+                columns[self.view.heading(name)] = self.view.shown(name, values)
+            else:
+                columns[name] = values
+        complaints = [BadRow(block.rows[at], *rows.bad[at]) for at in bad]
         return columns, complaints, int(np.count_nonzero(is_error))
 
-    def _applesoft(self, reading: _Reading) -> dict[str, NDArray[Any]]:
-        """Return the results of the 1988 arithmetic."""
-        from ..program.replay import replay
-
-        texts = {name: reading.texts(name) for name in SCENE}
-        for at in reading.bad:
-            for column in texts.values():
-                column[at] = "6"
-        if not reading.count:
-            empty = np.zeros(0)
-            return dict.fromkeys((*self.results, "ERROR", "LINE"), empty)
-        replay_results = replay(texts)
-        error = np.where(replay_results.zero_determinant, ZERO_DETERMINANT, replay_results.error)
-        results = {name: replay_results.floats(name) for name in self.results}
-        return {**results, "ERROR": error, "LINE": np.array(replay_results.line)}
-
     @np.errstate(all="ignore")
-    def _remark(self, columns: Mapping[str, Floats], block: Block) -> None:
+    def _remark(self, rows: _Rows) -> None:
         """Count the rows that each plausibility remark applies to."""
-        courses = {}
-        for vehicle, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
-            if x in columns and y in columns:
-                course = np.degrees(np.arctan2(columns[y], columns[x]))
-                is_at_rest = (columns[x] == 0) & (columns[y] == 0)
-                courses[vehicle] = np.where(is_at_rest, np.nan, course)
+        courses = {name[1]: rows.course(name) for name in ("TA", "TB")}
         sizes = {name: amount.value for name, amount in self.case.sizes.items()}
-        for name, where, words, amount in implausible(columns, self.view, courses, sizes):
-            if name not in self.columns and name not in ("TA", "TB"):
+        for name, where, words, amount in implausible(rows.columns, self.view, courses, sizes):
+            places = np.flatnonzero(np.broadcast_to(where, rows.count))
+            if not places.size or name not in {*self.columns, "TA", "TB"}:
                 continue
-            places = np.flatnonzero(np.broadcast_to(where, len(block.rows)))
-            if not places.size:
-                continue
-            if name in self._remarks:
-                self._remarks[name][1] += places.size
-                continue
-            at = int(places[0])
-            cell = block.columns[self.headings[name][0]][at] if name in self.columns else ""
-            value = float(np.broadcast_to(amount, len(block.rows))[at])
-            text = words.format(entry=f"{name} = {cell}", amount=value)
-            self._remarks[name] = [block.rows[at], places.size, text]
+            first = int(places[0])
+            entry = f"{name} = {rows.cells(name)[first]}" if name in self.columns else name
+            value = float(np.broadcast_to(amount, rows.count)[first])
+            text = words.format(entry=entry, amount=value)
+            row, count, text = self._counts.get(name, (rows.block.rows[first], 0, text))
+            self._counts[name] = row, count + places.size, text
 
 
-class _Reading:
-    """The scene's columns of one block as numbers; ``bad``: column and reason by place."""
+PLAIN_FRICTION = Amount.exactly(0.0)
+_EMPTY = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
+"""Results of a row that cannot be used; others are NaN."""
+
+
+class _Rows:
+    """The scene's columns of one block in base units; ``bad``: column and reason by place."""
 
     def __init__(self, solver: Solver, block: Block) -> None:
         self.solver, self.block, self.count = solver, block, len(block.rows)
         self.bad: dict[int, tuple[str, str]] = {}
         self.amounts: dict[str, dict[int, Amount]] = {}
-        self.columns: dict[str, Floats] = {}
-        self.shares = np.full(self.count, np.nan)
-        self.points = np.zeros(self.count, np.bool_)
-        for name in ("M", *(n for n in SCENE if n != "M")):
-            if name in solver.columns:
-                self.columns[name] = self._numbers(name)
-            elif name in solver.constants:
-                self.columns[name] = np.full(self.count, solver.constants[name])
-            if name == "M":
-                self.points = self.columns["M"] == 4
-        self._compute()
+        self.shown: dict[str, Floats] = {}
+        self.columns: dict[str, Floats] = {
+            name: np.full(self.count, value) for name, value in solver.constants.items()
+        }
+        self.shares = np.full(self.count, solver.share)
+        for name in sorted(solver.columns, key="M".__ne__):  # M decides which others are used
+            self._read(name)
+        if solver.may_be_points:
+            blank = np.where(self.columns["M"] == 4, 0.0, np.nan)
+            used = {*solver.followed, *solver.estimated}
+            absent = [n for n in UNUSED_BY_POINTS if n not in self.columns and n not in used]
+            self.columns |= dict.fromkeys(absent, blank)
+        for name in solver.estimated:
+            self._estimate(name)
+        for name in solver.followed:
+            self.columns[name] = self.course(name) + 180.0 * (name == "TA")
+        self._set_friction()
 
-    def _numbers(self, name: str) -> Floats:
-        """Return a column in base units along the listing's axes, NaN in bad cells."""
-        solver, column = self.solver, self.block.columns[self.solver.columns[name][0]]
-        shown = plain_numbers(column, solver.table.decimal_comma)
-        factor, offset = (float(x) for x in solver.view.map(name, solver.columns[name][1]))
-        values = shown if factor == 1 and not offset else offset + factor * shown
-        amounts = self.amounts[name] = {}
-        cells: dict[Any, Amount | str] = {}
-        places = np.flatnonzero(~np.isfinite(shown))
+    def cells(self, name: str) -> Column:
+        """Return the cells of a column."""
+        return self.block.columns[self.solver.columns[name][0]]
+
+    def _read(self, name: str) -> None:
+        """Set a column, NaN in bad cells."""
+        solver, cells, unit = self.solver, self.cells(name), self.solver.columns[name][1]
+        factor, offset = (float(x) for x in solver.view.map(name, unit))
+        shown = plain_numbers(cells)
+        is_odd = ~np.isfinite(shown)
         if name in UNUSED_BY_POINTS:
-            places = places[~self.points[places]]
-        if places.size and values is shown:
-            values = shown.copy()
-        for at in places.tolist():
-            cell = column[at]
-            if cell not in cells:
-                cells[cell] = self._cell(name, cell)
-            amount = cells[cell]
-            if isinstance(amount, str):
-                self.bad.setdefault(at, (name, amount))
-                continue
-            amounts[at], values[at] = amount, amount.value
+            is_odd &= self.columns["M"] != 4
+        self.amounts[name] = amounts = self._amounts(
+            name, {at: cells[at] for at in np.flatnonzero(is_odd).tolist()}, self._amount
+        )
+        values = offset + factor * shown
+        if amounts:
+            shown = shown.copy()
+        for at, amount in amounts.items():
+            values[at], shown[at] = amount.value, (amount.value - offset) / factor
             if amount.share:
                 self.shares[at] = amount.value
-        return values
+        self.columns[name], self.shown[name] = values, shown
 
-    def _cell(self, name: str, cell: Any) -> Amount | str:
-        """Return the amount in a cell, or why it is none."""
+    def _amounts(
+        self, name: str, cells: Mapping[int, Any], function: Callable[[str, Any], Amount]
+    ) -> dict[int, Amount]:
+        """Return the amounts of cells by place, those that are refused among the bad rows."""
+        results: dict[Any, Amount | str] = {}
+        amounts = {}
+        for at, cell in cells.items():
+            if cell not in results:
+                try:
+                    results[cell] = function(name, cell)
+                except UserError as error:
+                    results[cell] = str(error).removeprefix(f"{name} ")
+            result = results[cell]
+            if isinstance(result, str):
+                self.bad.setdefault(at, (name, result))
+            else:
+                amounts[at] = result
+        return amounts
+
+    def _amount(self, name: str, cell: Any) -> Amount:
+        """Return the amount in a cell. Raises UserError."""
         text = "" if cell is None else str(cell).strip()
-        if name == "M" and not text:
+        if text in ("", "nan"):
+            if name != "M":
+                raise UserError("is empty; expected a number")
             text = DEFAULT_M
-        if not text or text == "nan":
-            return "is empty; expected a number"
-        if self.solver.table.decimal_comma:
-            text = _with_point(text)
-        try:
-            amount = read(name, text, self.solver.view, self.solver.columns[name][1])
-        except UserError as error:
-            return str(error).removeprefix(f"{name} ")
-        return f"= {quoted(text)} is a range; expected one number" if amount.varies else amount
+        amount = read(name, text, self.solver.view, self.solver.columns[name][1])
+        if amount.varies:
+            raise UserError(f"= {quoted(text)} is a range; expected one number")
+        return amount
 
-    def _compute(self) -> None:
-        """Add the columns that are computed for each row."""
-        solver, columns = self.solver, self.columns
-        for name in solver.case.estimated:
-            if name in solver.computed and f"M{name[1]}" in solver.columns:
-                columns[name] = self._estimates(name, columns[f"M{name[1]}"])
-        for name, x, y in (("TA", "UX", "UY"), ("TB", "VX", "VY")):
-            if name in solver.computed and x in columns and y in columns:
-                turn = 180.0 if name == "TA" else 0.0
-                columns[name] = np.degrees(np.arctan2(columns[y], columns[x])) + turn
-        if "M" in solver.columns or solver.constants.get("M") == 4:
-            blank = np.where(self.points, 0.0, np.nan)
-            columns |= {name: blank for name in UNUSED_BY_POINTS if name not in columns}
-        if solver.share:
-            self.shares[:] = solver.share.value
+    def _estimate(self, name: str) -> None:
+        """Set yaw inertias estimated from each row's mass."""
+        sizes = [amount.value for n, amount in self.solver.case.sizes.items() if n[1] == name[1]]
+
+        def inertia(name: str, mass: float) -> Amount:
+            return Amount.exactly(estimate(name, mass, sizes, self.solver.view)[0])
+
+        masses = dict(enumerate(self.columns[f"M{name[1]}"].tolist()))
+        amounts = self._amounts(name, masses, inertia)
+        values = [amounts[at].value if at in amounts else math.nan for at in masses]
+        self.columns[name] = np.array(values)
+
+    def course(self, heading: str) -> Floats:
+        """Return the courses of the vehicle with a heading, TA or TB, NaN at rest."""
+        x, y = (self.columns[n] for n in (("UX", "UY") if heading == "TA" else ("VX", "VY")))
+        return np.where((x == 0) & (y == 0), np.nan, np.degrees(np.arctan2(y, x)))
+
+    def _set_friction(self) -> None:
+        """Set the friction that is a share of the critical friction of its row."""
         where = np.flatnonzero(~np.isnan(self.shares))
         if where.size:
-            scene = {n: np.broadcast_to(x, self.count)[where] for n, x in columns.items()}
-            critical = evaluate({n: x for n, x in scene.items() if n != "MU"}, ["MUC"])[0]
-            columns["MU"] = np.array(columns.get("MU", np.full(self.count, np.nan)))
-            columns["MU"][where] = self.shares[where] * np.abs(critical.get("MUC", np.nan))
+            scene = {n: x[where] for n, x in self.columns.items() if n != "MU"}
+            critical = evaluate(scene, ["MUC"])[0].get("MUC", np.nan)
+            friction = self.columns.setdefault("MU", np.full(self.count, np.nan))
+            friction[where] = self.shares[where] * np.abs(critical)
 
-    def _estimates(self, name: str, masses: Floats) -> Floats:
-        """Return yaw inertias estimated from each row's mass."""
-        case, vehicle = self.solver.case, name[1]
-        sizes = [case.sizes[n].value for n in (f"L{vehicle}", f"B{vehicle}") if n in case.sizes]
-        values = np.full(self.count, np.nan)
-        for at, mass in enumerate(masses.tolist()):
-            try:
-                values[at] = estimate(name, mass, sizes, self.solver.view)[0]
-            except UserError as error:
-                self.bad.setdefault(at, (name, str(error).removeprefix(f"{name} ")))
-        return values
-
-    def refuse(self, results: Mapping[str, NDArray[Any]]) -> None:
-        """Add the rows whose numbers no impact has, among those without a result."""
-        suspects = np.zeros(self.count, np.bool_)
+    def solve(self) -> dict[str, NDArray[Any]]:
+        """Return the results in double precision; rows whose numbers no impact has become bad."""
+        solution = solve(self.columns, self.solver.results)
+        results = {n: np.array(np.broadcast_to(x, self.count)) for n, x in solution.items()}
+        is_empty = np.zeros(self.count, np.bool_)
         for name, values in results.items():
-            suspects |= (values == Status.NOT_FINITE) if name == "STATUS" else np.isnan(values)
-        for at in np.flatnonzero(suspects).tolist():
-            scene = {n: float(np.broadcast_to(x, self.count)[at]) for n, x in self.columns.items()}
+            is_empty |= (values == Status.NOT_FINITE) if name == "STATUS" else np.isnan(values)
+        for at in np.flatnonzero(is_empty).tolist():
+            scene = {n: float(x[at]) for n, x in self.columns.items()}
             if refusal := _refusal(scene):
                 name, reason = refusal
                 self.bad.setdefault(at, (name, f"= {to_text(scene[name])} {reason}"))
+        return results
 
-    def texts(self, name: str) -> list[str]:
+    def replay(self) -> dict[str, NDArray[Any]]:
+        """Return the results of the 1988 arithmetic."""
+        from ..program.replay import replay
+
+        texts = {name: self._texts(name) for name in SCENE}
+        for at in self.bad:
+            for column in texts.values():
+                column[at] = "6"
+        played = replay({name: column or ["6"] for name, column in texts.items()})
+        results = {name: played.floats(name) for name in self.solver.results}
+        results["ERROR"] = np.where(played.zero_determinant, ZERO_DETERMINANT, played.error)
+        results["LINE"] = np.array(played.line)
+        return {name: values[: self.count] for name, values in results.items()}
+
+    def _texts(self, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
-        solver, default = self.solver, "1" if name in ("IA", "IB") else "0"
-        values = self.columns.get(name, np.full(self.count, math.nan))
-        if name not in solver.columns:
-            if name in solver.case.texts and name not in solver.computed:
-                return [solver.case.texts[name]] * self.count
-            return [default if math.isnan(x) else to_text(x) for x in values.tolist()]
-        factor, offset = solver.view.map(name, solver.columns[name][1])
-        is_typed = factor == 1 and not offset
+        default = "1" if name in ("IA", "IB") else "0"
+        values = self.columns.get(name, np.full(self.count, np.nan)).tolist()
         texts = []
-        for at, cell in enumerate(self.block.columns[solver.columns[name][0]]):
-            amount = self.amounts[name].get(at)
-            if amount:
-                text = to_text(float(values[at])) if amount.share else amount.typed
-            elif math.isnan(values[at]):  # a bad cell, or one that point masses do not look at
-                text = default
-            else:
-                text = cell.strip().upper() if isinstance(cell, str) else to_text(float(cell))
-                text = _with_point(text) if solver.table.decimal_comma else text
-                text = text if is_typed else to_text(float(offset + factor * exact(text)))
+        for at, digits in enumerate(self._digits(name)):
+            text = digits or (default if math.isnan(values[at]) else to_text(values[at]))
             if len(text) > MAX_TYPED or text == "INF":
-                fault = f"= {quoted(cell)} cannot be typed; expected at most {MAX_TYPED} digits"
+                fault = f"= {quoted(text)} cannot be typed; expected at most {MAX_TYPED} digits"
                 self.bad.setdefault(at, (name, fault))
             texts.append(text)
         return texts
 
+    def _digits(self, name: str) -> Iterable[str]:
+        """Yield the digits of a column in base units where they are written, else "" ."""
+        solver = self.solver
+        if name not in solver.columns:
+            text = solver.case.texts.get(name, "") if name in solver.constants else ""
+            yield from [text] * self.count
+            return
+        factor, offset = solver.view.map(name, solver.columns[name][1])
+        shown, amounts = self.shown[name], self.amounts[name]
+        for at, cell in enumerate(self.cells(name)):
+            amount = amounts.get(at)
+            if amount is None and math.isfinite(shown[at]):
+                text = cell.strip() if isinstance(cell, str) else to_text(float(cell))
+                amount = Amount.exactly(float(shown[at]), text).mapped(factor, offset)
+            yield "" if amount is None or amount.share else amount.typed
+
     def output_column(self, heading: str) -> Column:
         """Return a column of the table for the output."""
-        solver, name = self.solver, heading_name(heading)[0]
-        if name in solver.replaced and name in solver.case.texts:
-            text = solver.view.shown_text(name, to_double(solver.case.texts[name]))
-            return [text] * self.count if solver.as_text else np.full(self.count, float(text))
+        solver, name = self.solver, self.solver.kept[heading]
         if name in solver.replaced:
-            return solver.view.shown(name, self.columns[name])
-        column = self.block.columns.get(heading, [None] * self.count)
-        if solver.as_text or name not in solver.columns:
-            return column
-        shown = plain_numbers(column, solver.table.decimal_comma).copy()
-        factor, offset = (float(x) for x in solver.view.map(name, solver.columns[name][1]))
-        for at in self.amounts[name]:
-            shown[at] = (self.columns[name][at] - offset) / factor
-        return shown
+            values = solver.constants.get(name, self.columns[name])
+            return np.full(self.count, solver.view.shown(name, values))
+        if name in self.shown and not solver.as_text:
+            return self.shown[name]
+        return self.block.columns.get(heading, [None] * self.count)
 
 
 def _refusal(scene: Mapping[str, float]) -> tuple[str, str] | None:
     """Return a value that no impact has, and why; None for a scene without one."""
-    if scene["M"] not in (4, 6):
-        return "M", "is neither 4 nor 6"
-    for name, value in scene.items():
-        if scene["M"] == 4 and name in UNUSED_BY_POINTS:
-            continue
-        if name in ("MA", "MB", "IA", "IB") and not value > 0:
-            return name, "is not above 0"
-        if not (math.isfinite(value) or (value == math.inf and name in ("MA", "MB", "IA", "IB"))):
-            return name, "is no finite number"
-    for inertia, names in (("MA", "UX UY"), ("MB", "VX VY"), ("IA", "WA"), ("IB", "WB")):
-        for name in names.split():
-            if scene[inertia] == math.inf and scene[name]:
-                return name, f"is not 0, and {inertia} is infinite: a barrier is at rest"
-    if all(math.inf in (scene[f"M{vehicle}"], scene[f"I{vehicle}"]) for vehicle in "AB"):
-        return "MB", "or IB is infinite, and so is MA or IA"
-    return None
+    unused = UNUSED_BY_POINTS if scene["M"] == 4 else ()
+    used = {name: value for name, value in scene.items() if name not in unused}
+    barriers = {name for name in INERTIAS if used.get(name) == math.inf}
+    faults = [("M", scene["M"] not in (4, 6), "is neither 4 nor 6")]
+    for name, value in used.items():
+        is_infinite = not math.isfinite(value) and name not in barriers
+        faults.append((name, name in INERTIAS and not value > 0, "is not above 0"))
+        faults.append((name, is_infinite, "is no finite number"))
+    for name, inertia in RESISTANCES.items():
+        reason = f"is not 0, and {inertia} is infinite: a barrier is at rest"
+        faults.append((name, inertia in barriers and scene[name] != 0, reason))
+    are_both = len({name[1] for name in barriers}) > 1
+    faults.append(("MB", are_both, "or IB is infinite, and so is MA or IA"))
+    return next(((name, reason) for name, is_fault, reason in faults if is_fault), None)
 
 
-def plain_numbers(column: Column, decimal_comma: bool = False) -> Floats:
+def plain_numbers(column: Column) -> Floats:
     """Return a column as doubles, NaN where a cell is no plain number."""
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
         return column.astype(np.float64, copy=False)
     if hasattr(column, "cast"):  # polars
         import polars
 
-        if decimal_comma:
-            column = column.str.replace(r"^\s*([-+]?\d*),(\d+)\s*$", "${1}.${2}")
         return np.array(column.cast(polars.Float64, strict=False).to_numpy(), np.float64)
-    cells = [_with_point(cell) if cell else cell for cell in column] if decimal_comma else column
-    with suppress(OverflowError):  # a whole number beyond doubles
-        if {*map(type, cells)} <= {float, int, NoneType}:
-            return np.array(cells, np.float64)
     with suppress(TypeError, ValueError):  # some cell is no plain number
-        if " " not in "".join(cells):
-            return np.array(to_doubles(cells))
-    return np.array([_double(cell) for cell in cells], np.float64)
+        if " " not in "".join(column):
+            return np.array(to_doubles(column))
+    return np.array([_double(cell) for cell in column], np.float64)
 
 
 def _double(cell: Any) -> float:
@@ -517,13 +508,6 @@ def _double(cell: Any) -> float:
         return float(cell)
     except (TypeError, ValueError, OverflowError):
         return math.nan
-
-
-def _with_point(text: str) -> str:
-    """Return a number with a decimal comma as one with a point."""
-    head, comma, tail = text.rpartition(",")
-    is_decimal = comma and "," not in head and tail[:1].isdigit()
-    return f"{head.replace('.', '')}.{tail}" if is_decimal else text
 
 
 def _headings_by_name(names: Sequence[str]) -> dict[str, tuple[str, str]]:

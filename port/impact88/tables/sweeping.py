@@ -8,8 +8,9 @@ from math import isfinite, prod
 
 import numpy as np
 
+from ..cases.amounts import Amount
 from ..cases.case import Case
-from ..decimals import negated, to_double, to_text
+from ..decimals import to_double, to_text
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from .textformats import BLOCK_ROWS, Block, Table
@@ -59,9 +60,9 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
 def _shown_digits(case: Case, name: str) -> str:
     """Return a value as shown, with the digits typed where nothing but its sign is converted."""
     (factor, offset), text = case.view.map(name), case.texts[name]
-    if offset or abs(factor) != 1:
-        return case.view.shown_text(name, to_double(text))
-    return negated(text) if factor < 0 else text
+    value = to_double(text)
+    shown = Amount.exactly(value, text).mapped(1 / factor, -offset / factor)
+    return shown.text or case.view.shown_text(name, value)
 
 
 def _values(case: Case, name: str, text: str) -> list[str]:

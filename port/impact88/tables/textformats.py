@@ -12,9 +12,9 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from importlib.util import find_spec
-from itertools import islice
+from itertools import chain, islice
 from typing import IO, Any, NamedTuple
 
 import numpy as np
@@ -28,7 +28,6 @@ Column = Any
 
 CHUNK_BYTES = 8_000_000  # of CSV read at a time: some 60,000 rows, more gain nothing
 BLOCK_ROWS = 20_000  # of other formats
-MAX_BLANK_LINES = 1_000  # in a row; more are no JSON Lines, and take long to skip
 MAX_COLUMNS = 10_000  # beyond it a file is no table of scenes, and splitting it takes long
 
 
@@ -43,7 +42,7 @@ class Table(NamedTuple):
     """A table being read.
 
     ``names``: its headings; ``blocks``: its rows; ``where``: its name in messages; ``counts``: what
-    row numbers count, "line" or "row"; ``decimal_comma``: True where numbers have one;
+    row numbers count, "line" or "row";
     ``remarks``: how it was read; ``extent``: the file's size in bytes, None if that is not known,
     and a function that returns how many were read."""
 
@@ -51,7 +50,6 @@ class Table(NamedTuple):
     blocks: Iterator[Block]
     where: str = "table"
     counts: str = "row"
-    decimal_comma: bool = False
     remarks: tuple[str, ...] = ()
     extent: tuple[int | None, Callable[[], int]] = (None, int)
 
@@ -86,46 +84,37 @@ def heading_name(heading: str) -> tuple[str, str]:
 
 def read_csv(path: str, encoding: str = "") -> Table:
     """Return the table in a CSV file, ``-`` for standard input; fields are separated by commas,
-    semicolons or tabs. Raises UserError."""
+    semicolons or tabs, and numbers among semicolons have a decimal comma. Raises UserError."""
     where, source = display_name(path), Source(path)
     extent = source.extent
     chunks = _chunks(source, where)
     first = next(chunks, b"")
     if encoding or encoding_of(first) != "utf-8":
         first, chunks = _recode(b"".join([first, *chunks]), where, encoding), iter(())
-    text = _utf8(first, where, 0)
-    head = text.split("\n", 1)[0]
+    line, _, body = first.partition(b"\n")
+    head = _utf8(line, where, 1).removeprefix("\ufeff")
     delimiter = max(",;\t", key=head.count)
-    with _csv_errors(where):
-        reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-        names = check_headings(next(reader, []), where)
-    body = first.split(b"\n", reader.line_num)[-1] if first.count(b"\n") >= reader.line_num else b""
+    names = check_headings(next(_split_rows(head, delimiter, where), []), where)
 
     def blocks() -> Iterator[Block]:
-        line = reader.line_num + 1
-        for chunk in _chain(body, chunks):
-            split = _split_plain if find_spec("polars") else _split
-            yield from split(chunk, names, delimiter, line, where)
+        line = 2
+        for chunk in chain([body] if body else [], chunks):
+            block = find_spec("polars") and _split_plain(chunk, names, delimiter, line)
+            block = block or _split(chunk, names, delimiter, line, where)
+            if block.rows:
+                yield _with_points(block) if delimiter == ";" else block
             line += chunk.count(b"\n")
 
-    return Table(names, blocks(), where, "line", delimiter == ";", extent=extent)
+    return Table(names, blocks(), where, "line", extent=extent)
 
 
-@contextmanager
-def _csv_errors(where: str) -> Iterator[None]:
-    """Context in which errors of the csv module are UserErrors."""
+def _split_rows(text: str, delimiter: str, where: str) -> Iterator[list[str]]:
+    """Yield the fields of each row, also of blank lines inside quotes. Raises UserError."""
     csv.field_size_limit(LONGEST_LINE)
     try:
-        yield
+        yield from csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     except csv.Error as error:
         raise UserError(f"is not CSV: {error}", where) from None
-
-
-def _chain(first: bytes, others: Iterable[bytes]) -> Iterator[bytes]:
-    """Yield chunks that hold anything."""
-    if first:
-        yield first
-    yield from others
 
 
 def _chunks(source: Source, where: str) -> Iterator[bytes]:
@@ -135,18 +124,13 @@ def _chunks(source: Source, where: str) -> Iterator[bytes]:
         rest += data
         end = rest.rfind(b"\n") + 1
         if end and rest.count(b'"', 0, end) % 2 == 0:
-            yield _with_newlines(rest[:end])
+            yield rest[:end].replace(b"\r\n", b"\n")
             rest = rest[end:]
         elif len(rest) > 4 * CHUNK_BYTES:
             raise UserError("has a line or a quoted text that does not end; expected CSV", where)
     source.close()
     if rest:
-        yield _with_newlines(rest)
-
-
-def _with_newlines(data: bytes) -> bytes:
-    """Return bytes whose lines end with a newline alone."""
-    return data.replace(b"\r\n", b"\n") if b"\r" in data else data
+        yield rest.replace(b"\r\n", b"\n")
 
 
 def _recode(data: bytes, where: str, encoding: str) -> bytes:
@@ -155,119 +139,123 @@ def _recode(data: bytes, where: str, encoding: str) -> bytes:
         text = data.decode(encoding) if encoding else decode(data, where)
     except (LookupError, UnicodeDecodeError) as error:
         raise UserError(f"cannot be read as {quoted(encoding)}: {error}", where) from None
-    return _with_newlines(text.encode())
+    return text.replace("\r\n", "\n").encode()
 
 
 def _utf8(chunk: bytes, where: str, line: int) -> str:
-    """Return the text of bytes. Raises UserError."""
+    """Return the text of bytes that begin in a line. Raises UserError."""
     try:
-        return chunk.decode("utf-8-sig" if line == 0 else "utf-8")
+        return chunk.decode()
     except UnicodeDecodeError as error:
-        place = f"{where}, line {max(line, 1) + chunk.count(bytes([10]), 0, error.start)}"
+        place = f"{where}, line {line + chunk.count(bytes([10]), 0, error.start)}"
         raise UserError("is not UTF-8 text; expected --encoding, such as cp1252", place) from None
 
 
-_PLAIN_CSV: dict[str, Any] = {"has_header": False, "infer_schema": False, "quote_char": None}
-
-
-def _split_plain(
-    chunk: bytes, names: Sequence[str], delimiter: str, line: int, where: str
-) -> Iterator[Block]:
-    """Yield the block of a chunk by polars where it has neither quotes nor rows of another width;
-    polars fills those without a word."""
+def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) -> Block | None:
+    """Return the block of a chunk by polars; None where it has quotes, blank rows, or rows of
+    another width, which polars fills without a word."""
     import polars
 
-    rows = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
-    is_odd = any(mark in chunk for mark in (b'"', b"\r", b"\n\n")) or chunk.startswith(b"\n")
-    frame = None
-    with suppress(polars.exceptions.PolarsError):  # a row of more fields, which `_split` names
-        frame = None if is_odd else polars.read_csv(chunk, **_PLAIN_CSV, separator=delimiter)
-    if frame is not None and frame.shape == (rows, len(names)):
-        frame.columns = list(names)
-        # a row of fewer fields has nothing in the last column
-        fields = rows * (len(names) - 1)
-        is_odd = frame[names[-1]].has_nulls() and chunk.count(delimiter.encode()) != fields
-    else:
-        is_odd = True
-    if is_odd or frame is None:
-        yield from _split(chunk, names, delimiter, line, where)
-        return
-    blank = frame.select(polars.all_horizontal(polars.all().is_null())).to_series()
-    numbers: Sequence[int] = range(line, line + rows)
-    if blank.any():
-        numbers = [n for n, is_blank in zip(numbers, blank, strict=True) if not is_blank]
-        frame = frame.filter(~blank)
-    yield Block({name: frame[name] for name in names}, numbers)
+    lines = b"\n" + chunk.removesuffix(b"\n") + b"\n"
+    mark = delimiter.encode()
+    rows = lines.count(b"\n") - 1
+    odd = (b'"', b"\r", b"\n\n", b"\n" + mark * (len(names) - 1) + b"\n")
+    if any(part in lines for part in odd) or lines.count(mark) != rows * (len(names) - 1):
+        return None
+    options: dict[str, Any] = {"has_header": False, "infer_schema": False, "quote_char": None}
+    with suppress(polars.exceptions.PolarsError):  # rows of more and of fewer fields; not UTF-8
+        frame = polars.read_csv(chunk, **options, separator=delimiter)
+        if frame.shape == (rows, len(names)):
+            columns = dict(zip(names, frame.get_columns(), strict=True))
+            return Block(columns, range(line, line + rows))
+    return None
 
 
-def _split(
-    chunk: bytes, names: Sequence[str], delimiter: str, line: int, where: str
-) -> Iterator[Block]:
-    """Yield the block of a chunk by the csv module. Raises UserError for a row of another width."""
-    text = _utf8(chunk, where, line)
+def _split(chunk: bytes, names: Sequence[str], delimiter: str, line: int, where: str) -> Block:
+    """Return the block of a chunk by the csv module. Raises UserError for a row of another
+    width."""
     rows, numbers = [], []
-    with _csv_errors(where):
-        reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-        start = line
-        for row in reader:
-            if len(row) not in (0, len(names)):
-                fault = f"has {len(row)} fields; expected {len(names)}, as in the headings"
-                raise UserError(fault, f"{where}, line {start}")
-            if any(row):
-                rows.append(row)
-                numbers.append(start)
-            start = line + reader.line_num
-    if rows:
-        columns = zip(names, zip(*rows, strict=True), strict=True)
-        yield Block({name: list(column) for name, column in columns}, numbers)
+    for row in _split_rows(_utf8(chunk, where, line), delimiter, where):
+        if len(row) not in (0, len(names)):
+            fault = f"has {len(row)} fields; expected {len(names)}, as in the headings"
+            raise UserError(fault, f"{where}, line {line}")
+        if any(row):
+            rows.append(row)
+            numbers.append(line)
+        line += 1 + sum(cell.count("\n") for cell in row)
+    columns = zip(*rows, strict=True) if rows else [()] * len(names)
+    return Block({n: list(column) for n, column in zip(names, columns, strict=True)}, numbers)
+
+
+_DECIMAL_COMMA = r"^\s*([-+]?\d*)\.?(\d*),(\d)"
+
+
+def _with_points(block: Block) -> Block:
+    """Return a block whose quantities have decimal points in place of decimal commas."""
+    columns = dict(block.columns)
+    for heading, column in columns.items():
+        if not heading_name(heading)[0]:
+            continue
+        if isinstance(column, list):
+            columns[heading] = [re.sub(_DECIMAL_COMMA, r"\1\2.\3", cell) for cell in column]
+        else:
+            columns[heading] = column.str.replace(_DECIMAL_COMMA, "${1}${2}.${3}")
+    return block._replace(columns=columns)
 
 
 # -- JSON Lines
 
 
-class Numeral(str):
-    """The digits of a JSON number."""
-
-    __slots__ = ()
-
-
 def read_json(path: str, digits: bool = False) -> Table:
     """Return the table in a file of JSON Lines, one object for each row, or of one array of
-    objects. ``digits``: keep those of numbers. Raises UserError."""
-    where = display_name(path)
-    source = Source(path)
-    extent = source.extent
-    records = _json_records(io.BufferedReader(source), where, Numeral if digits else None)
+    objects. ``digits``: keep those of numbers, as texts. Raises UserError."""
+    where, source = display_name(path), Source(path)
+    records = _records(io.BufferedReader(source), where, str if digits else None)
     first = next(records, None)
     if first is None:
         raise UserError("holds nothing; expected an object for each row", where)
     names = check_headings(list(first[1]), where)
-    return Table(names, _json_blocks(names, first, records, where), where, "line", extent=extent)
+
+    def blocks() -> Iterator[Block]:
+        rows = chain([first], records)
+        while block := list(islice(rows, BLOCK_ROWS)):
+            for number, row in block:
+                for name in row.keys() - {*names}:
+                    fault = (
+                        f"{quoted(name)} is not in the first row; expected the same names in each"
+                    )
+                    raise UserError(fault, f"{where}, line {number}")
+            columns = {name: [row.get(name) for _, row in block] for name in names}
+            yield Block(columns, [number for number, _ in block])
+
+    return Table(names, blocks(), where, "line", extent=source.extent)
 
 
-def _json_records(
-    file: IO[bytes], where: str, numeral: type[Numeral] | None
+def _records(
+    file: IO[bytes], where: str, numeral: type[str] | None
 ) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the objects of a file, with their lines."""
-    number = blank = 0
+    """Yield the objects of a file with their lines, of an array with their numbers. Raises
+    UserError for a value that is no flat object."""
+    number = 0
     while line := file.readline(LONGEST_LINE):
         number += 1
         place = f"{where}, line {number}"
-        if number == 1 and line.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"["):
-            data = line + file.read(LONGEST_LINE * 100)
-            for at, row in enumerate(_json(data, where, numeral), 1):
-                yield at, _record(row, f"{where}, object {at}")
-            return
-        if len(line) == LONGEST_LINE:
+        if line.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"["):
+            line += file.read(LONGEST_LINE * 100)
+        elif len(line) == LONGEST_LINE:
             raise UserError(f"is longer than {LONGEST_LINE:,} bytes; expected one row", place)
-        if line.strip():
-            blank = 0
-            yield number, _record(_json(line, place, numeral), place)
-        elif (blank := blank + 1) > MAX_BLANK_LINES:
-            raise UserError(f"{MAX_BLANK_LINES:,} blank lines; expected an object a line", place)
+        value = _json(line, place, numeral) if line.strip() else []
+        for at, row in enumerate(value if isinstance(value, list) else [value], number):
+            if not isinstance(row, dict):
+                raise UserError(f"is {quoted(row)}; expected an object for each row", place)
+            for name, cell in row.items():
+                if isinstance(cell, dict | list | bool):
+                    fault = f"{quoted(name)} is no number and no text; expected one of these"
+                    raise UserError(fault, place)
+            yield at, row
 
 
-def _json(data: bytes, place: str, numeral: type[Numeral] | None) -> Any:
+def _json(data: bytes, place: str, numeral: type[str] | None) -> Any:
     """Return the value of a JSON text, its numbers as ``numeral``. Raises UserError."""
     try:
         text = data.decode("utf-8-sig")
@@ -275,36 +263,6 @@ def _json(data: bytes, place: str, numeral: type[Numeral] | None) -> Any:
     except (ValueError, RecursionError) as error:
         reason = getattr(error, "msg", None) or "not UTF-8 text, or nested too deeply"
         raise UserError(f"is not JSON: {reason}; expected an object for each row", place) from None
-
-
-def _record(value: Any, place: str) -> dict[str, Any]:
-    """Return a row. Raises UserError for a value that is no flat object."""
-    if not isinstance(value, dict):
-        raise UserError(f"is {quoted(value)}; expected an object, a name and a value each", place)
-    nested = next((name for name, x in value.items() if isinstance(x, dict | list | bool)), None)
-    if nested is not None:
-        raise UserError(f"{quoted(nested)} is no number and no text; expected one of these", place)
-    return value
-
-
-def _json_blocks(
-    names: Sequence[str],
-    first: tuple[int, dict[str, Any]],
-    records: Iterator[tuple[int, dict[str, Any]]],
-    where: str,
-) -> Iterator[Block]:
-    """Yield the blocks of a file whose first row has the headings ``names``."""
-    block = [first, *islice(records, BLOCK_ROWS)]
-    known = {*names}
-    while block:
-        for number, row in block:
-            if not row.keys() <= known:
-                name = next(name for name in row if name not in known)
-                fault = f"{quoted(name)} is not in the first row; expected the same names in each"
-                raise UserError(fault, f"{where}, line {number}")
-        columns = {name: [row.get(name) for _, row in block] for name in names}
-        yield Block(columns, [number for number, _ in block])
-        block = list(islice(records, BLOCK_ROWS))
 
 
 # -- writing
