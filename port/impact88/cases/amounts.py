@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, Literal, NamedTuple
@@ -122,7 +122,7 @@ class Amount:
         if self.kind == "uniform":
             return (b - a) / math.sqrt(12)
         if self.kind == "triangular":
-            return math.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18)
+            return math.sqrt(((b - a) ** 2 + (c - a) * (c - b)) / 18)
         return self.sd
 
     def limits(self, reach: float = 3.0) -> tuple[float, float]:
@@ -169,10 +169,6 @@ class Amount:
         value = exact(self.text) if self.text else self.value
         return _image(self, value, (self.low, self.high), self.sd, factor, offset)
 
-    def as_json(self) -> dict[str, Any]:
-        """Return the amount as an object for JSON."""
-        return asdict(self)
-
 
 def _image(
     like: Amount,
@@ -213,10 +209,11 @@ _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
 """Kinds that are named, with how many numbers follow."""
 
 
-class Part(NamedTuple):
-    """A number as written: its exact value, the symbol of its unit ("" without), its digits."""
+class Number(NamedTuple):
+    """A number as written: its exact value, the symbol of its unit ("" without), and its digits
+    ("" of one in several units, such as feet and inches)."""
 
-    number: Fraction
+    value: Fraction
     unit: str
     digits: str
 
@@ -304,71 +301,69 @@ def parse(name: str, words: str, usual: str | None) -> Notation:
         raise UserError(f"{entry} is longer than {MAX_LENGTH} characters; expected an amount")
     rule = quantity(name).unit
     try:
-        kind, groups = _groups(rule, words)
-        unit, numbers = _in_one_unit(rule, groups)
+        kind, numbers = _numbers(rule, words)
+        unit, values = _in_one_unit(rule, numbers)
         if usual is not None:
-            _check_commas(rule, groups, unit or usual)
+            _check_commas(rule, numbers, unit or usual)
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except ValueError:
         raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
     if name in ("MUP", "RR0") and unit:
         raise UserError(f"{entry}: expected a number without %; MU takes shares of the critical")
-    nominal = groups[1 if kind == "triangular" else 0]
-    text = nominal[0].digits.replace(",", "") if len(nominal) == 1 and kind != "uniform" else ""
-    notation = _notation(kind, numbers, unit, text)
+    nominal = numbers[1 if kind == "triangular" else 0]
+    text = "" if kind == "uniform" else nominal.digits.replace(",", "")
+    notation = _notation(kind, values, unit, text)
     low, high = notation.ends
     if not low <= notation.value <= high or notation.sd < 0:
         raise UserError(f"{entry}: expected the lower limit first, and no negative tolerance")
     return notation._replace(kind="exact") if low == high else notation
 
 
-def _notation(kind: str, numbers: Sequence[Any], unit: str, text: str) -> Notation:
-    """Return the notation of numbers of a kind of `_groups`."""
-    first, last = numbers[0], numbers[-1]
-    if kind == "exact":
-        return Notation(unit, "exact", first, (first, first), text=text)
-    if kind == "triangular":
-        return Notation(unit, "triangular", numbers[1], (first, last), text=text)
+def _notation(kind: Any, values: Sequence[Fraction], unit: str, text: str) -> Notation:
+    """Return the notation of the values of a kind of `_numbers`."""
+    first, last = values[0], values[-1]
     if kind == "normal":
         ends = (-math.inf, math.inf) if last else (first, first)
-        return Notation(unit, "normal", first, ends, last, text)
-    if kind == "uniform":
-        return Notation(unit, "uniform", (first + last) / 2, (first, last))
-    half = last * abs(first) / 100 if kind == "relative" else last
-    return Notation(unit, "uniform", first, (first - half, first + half), text=text)
+        return Notation(unit, kind, first, ends, last, text)
+    if kind == "around":
+        return Notation(unit, "uniform", first, (first - last, first + last), text=text)
+    middle = values[1] if kind == "triangular" else (first + last) / 2
+    return Notation(unit, kind, middle, (first, last), text=text)
 
 
-def _groups(rule: str, words: str) -> tuple[str, list[list[Part]]]:
-    """Return the kind of an amount, and of each of its numbers the parts.
+def _numbers(rule: str, words: str) -> tuple[str, list[Number]]:
+    """Return the kind of an amount, one of `Amount` or "around" for a half width, and its numbers.
 
-    The kind is one of `Amount`, "around" for a half width or "relative" for one in percent. Raises
-    ValueError for a text that is no amount, UserError for one refused for another reason."""
+    Raises ValueError for a text that is no amount, UserError for one refused for another reason."""
     kind, _, remainder = words.partition(" ")
     if kind in _COUNTS:
-        parts = _parts(rule, remainder)
-        if len(parts) != _COUNTS[kind]:
+        numbers = _parts(rule, remainder)
+        if len(numbers) != _COUNTS[kind]:
             raise ValueError(words)
-        return kind, [[part] for part in parts]
+        return kind, numbers
     first, mark, second = (part.strip() for part in words.partition(TOLERANCE))
     if mark and second.endswith("%"):
         if rule == PERCENT or "%" in first:
             raise UserError("a percentage of a percentage; expected such as '37 +- 2'")
-        return "relative", [_parts(rule, first), _parts(NUMBER, second.rstrip("% "))]
+        middle, share = _number(rule, first), _number(NUMBER, second.rstrip("% "))
+        return "around", [
+            middle,
+            share._replace(value=abs(middle.value) * share.value / 100, unit=middle.unit),
+        ]
     if mark:
-        return "around", [_parts(rule, first), _parts(rule, second)]
+        return "around", [_number(rule, first), _number(rule, second)]
     first, mark, second = (part.strip() for part in words.partition(".."))
     if mark and "..." not in words:
-        return "uniform", [_parts(rule, first), _parts(rule, second)]
+        return "uniform", [_number(rule, first), _number(rule, second)]
     if is_number(words) and not re.search(r"\d \d", words):  # as INPUT takes it: "." is 0
-        return "exact", [[Part(_fraction(words), "", words.replace(" ", ""))]]
-    return "exact", [_parts(rule, words)]
+        return "exact", [Number(_fraction(words), "", words.replace(" ", ""))]
+    return "exact", [_number(rule, words)]
 
 
-def _parts(rule: str, words: str) -> list[Part]:
-    """Return the parts of a text: one number, or several such as feet and inches. Raises
-    ValueError."""
-    parts: list[Part] = []
+def _parts(rule: str, words: str) -> list[Number]:
+    """Return the numbers of a text side by side. Raises ValueError."""
+    parts: list[Number] = []
     place = 0
     while place < len(words) or not parts:
         match = _PART.match(words, place)
@@ -376,39 +371,50 @@ def _parts(rule: str, words: str) -> list[Part]:
             raise ValueError(words)
         sign, digits, symbol = match.groups(default="")
         unit = unit_of(rule, symbol).symbol if symbol else ""
-        parts.append(Part(_fraction(sign + digits), unit, sign + digits))
+        parts.append(Number(_fraction(sign + digits), unit, sign + digits))
         place = match.end()
     return parts
 
 
-def _in_one_unit(rule: str, groups: Sequence[Sequence[Part]]) -> tuple[str, list[Fraction]]:
-    """Return the unit of the first part that has one, and the numbers in it. Raises ValueError
-    unless the parts of each number have smaller and smaller units, and none but the first a
-    sign."""
-    units = [part.unit for parts in groups for part in parts]
-    common = next((unit for unit in units if unit), "")
-    if len({*units} - {""}) > 1 and "" in units:
+def _number(rule: str, words: str) -> Number:
+    """Return the one number of a text: a part, or parts of smaller and smaller units, of which none
+    but the first has a sign. Raises ValueError."""
+    first, *smaller = _parts(rule, words)
+    if not smaller:
+        return first
+    value = abs(first.value)
+    for larger, part in pairwise((first, *smaller)):
+        ratio = _ratio(rule, part.unit, larger.unit)
+        if not 0 < ratio < 1 or part.digits[0] in "+-":
+            raise ValueError(words)
+        value += part.value * _ratio(rule, part.unit, first.unit)
+    return Number(-value if first.digits[0] == "-" else value, first.unit, "")
+
+
+def _ratio(rule: str, unit: str, other: str) -> Fraction:
+    """Return the size of a unit in another one, 0 if there are not two, 1 for the same."""
+    if unit == other:
+        return Fraction(1)
+    return unit_of(rule, unit).size / unit_of(rule, other).size if unit and other else Fraction(0)
+
+
+def _in_one_unit(rule: str, numbers: Sequence[Number]) -> tuple[str, list[Fraction]]:
+    """Return the unit of the first number that has one, and the values in it. Raises UserError for
+    numbers without beside several units."""
+    units = [number.unit for number in numbers if number.unit]
+    is_mixed = len({*units}) > 1 or not all(number.digits for number in numbers)
+    if is_mixed and len(units) < len(numbers):
         raise UserError("expected a unit beside each number")
-    size = {unit: unit_of(rule, unit).size for unit in units if unit}
-    numbers = []
-    for parts in groups:
-        first, *smaller = parts
-        sizes = [size.get(part.unit, Fraction(0)) for part in parts]
-        is_descending = all(a > b > 0 for a, b in pairwise(sizes))
-        if not is_descending or any(part.digits[0] in "+-" for part in smaller):
-            raise ValueError(parts)
-        sign = -1 if first.number < 0 else 1
-        scaled = [p.number * (size[p.unit] / size[common] if p.unit else 1) for p in parts]
-        numbers.append(scaled[0] + sign * sum(scaled[1:]))
-    return common, numbers
+    common = units[0] if units else ""
+    return common, [n.value * _ratio(rule, n.unit or common, common) for n in numbers]
 
 
-def _check_commas(rule: str, groups: Sequence[Sequence[Part]], unit: str) -> None:
+def _check_commas(rule: str, numbers: Sequence[Number], unit: str) -> None:
     """Raise UserError for a comma that may be a decimal one: 1,234 is a thousand only with an
     American unit."""
     is_american = bool(unit) and unit_of(rule, unit).side == "us"
-    for part in (part for parts in groups for part in parts):
-        digits = part.digits.lstrip("+-")
+    for number in numbers:
+        digits = number.digits.lstrip("+-")
         if _DECIMAL_COMMA.fullmatch(digits) and (digits[0] == "0" or not is_american):
             choices = f"{digits.replace(',', '')} or {digits.replace(',', '.')}"
             raise UserError(f"the comma of {digits} may be a decimal one; expected {choices}")
@@ -443,10 +449,7 @@ def _skid(name: str, distance: str, friction: str, view: View) -> Amount:
     slow, value, fast = (
         math.sqrt(2 * gravity * d * mu) for d, mu in (low, [part.value for part in parts], high)
     )
-    varying = [part for part in parts if part.varies]
-    if not varying:
-        return Amount.exactly(value)
-    if len(varying) == 1 and varying[0].kind != "normal":
-        return Amount(value, slow, fast, varying[0].kind)
-    spread = math.hypot(*(part.standard_deviation / part.value for part in varying))
-    return Amount(value, slow, fast, "normal", value / 2 * spread)
+    kinds = [part.kind for part in parts if part.varies] or ["exact"]
+    kind = kinds[0] if len(kinds) == 1 else "normal"
+    spread = math.hypot(*(part.standard_deviation / part.value for part in parts))
+    return Amount(value, slow, fast, kind, value / 2 * spread if kind == "normal" else 0.0)

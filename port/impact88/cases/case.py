@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -98,6 +98,11 @@ class Case:
     omitted: tuple[str, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
     defaults: View = field(default=PLAIN, repr=False)
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).copy().items():
+            if isinstance(value, dict):  # a case does not change
+                object.__setattr__(self, name, MappingProxyType(value))
 
     @classmethod
     def load(cls, path: str, **view: str | None) -> Case:
@@ -227,11 +232,6 @@ class Case:
         return tuple(name for name, amount in self.entries.items() if amount.varies)
 
     @property
-    def of_points(self) -> bool:
-        """True for point masses, M = 4."""
-        return self.entries["M"].value == 4
-
-    @property
     def correlations(self) -> dict[tuple[str, str], float]:
         """Correlations of values known within limits, by pairs of names.
 
@@ -260,8 +260,7 @@ class Case:
     def toml(self) -> str:
         """Return the case as a commented scene file, entries as written."""
         texts = {name: _written_text(value) for name, value in self.written.items()}
-        names = [n for n in SCENE if n in texts]
-        return write_toml({**self.view.words(), **texts}, names, view=self.view)
+        return write_toml({**self.view.words(), **texts}, view=self.view)
 
 
 def _written_text(value: str | Amount) -> str:
@@ -289,22 +288,16 @@ class _Reader:
             raise UserError(f"{quoted(entries)}: expected a mapping of names to values")
         self.source, self.places, self.defaults = source, places, view
         self.written = {n: v for n, value in entries.items() if (v := _entry(n, value)) != ""}
-        self.about = {n: str(self.written[n]) for n in ABOUT if n in self.written}
-        self.sources = {
-            name.removesuffix(SOURCE): str(text)
-            for name, text in self.written.items()
-            if name.endswith(SOURCE)
-        }
-        self.given = {
-            name: value
-            for name, value in self.written.items()
-            if name not in ABOUT and not name.endswith(SOURCE)
-        }
+        self.given = dict(self.written)
+        self.about = {n: str(self.given.pop(n)) for n in ABOUT if n in self.given}
+        names = [name for name in self.given if name.endswith(SOURCE)]
+        self.sources = {n.removesuffix(SOURCE): str(self.given.pop(n)) for n in names}
         self.entries: dict[str, Amount] = {}
         self.sizes: dict[str, Amount] = {}
         self.estimated: list[str] = []
         self.remarks: list[str] = []
         self.is_inferred = False
+        self.units: dict[str, list[tuple[str, str]]] = {}
 
     def case(self) -> Case:
         """Return the case."""
@@ -321,24 +314,11 @@ class _Reader:
         self._set_headings()
         if self.entries["M"].value == 4:
             self._set_plane_across()
-        texts, omitted = self._texts()
+        self.texts, self.omitted = self._texts()
         self._remark()
-        about = {n: self.about.get(n, "") for n in ("title", "case", "examiner", "date")}
-        return Case(
-            MappingProxyType(self.entries),
-            self.view,
-            MappingProxyType(texts),
-            tuple(dict.fromkeys(self.remarks)),
-            **about,
-            written=MappingProxyType(self.written),
-            source=self.source,
-            sources=MappingProxyType(self.sources),
-            sizes=MappingProxyType(self.sizes),
-            estimated=tuple(self.estimated),
-            omitted=omitted,
-            places=self.places,
-            defaults=self.defaults,
-        )
+        values: dict[str, Any] = dict.fromkeys(ABOUT, "") | self.about | vars(self)
+        values |= {"remarks": (*dict.fromkeys(self.remarks),), "estimated": (*self.estimated,)}
+        return Case(**{item.name: values[item.name] for item in fields(Case)})
 
     @contextmanager
     def _naming(self, name: str) -> Iterator[None]:
@@ -360,13 +340,12 @@ class _Reader:
 
     def _infer_units(self) -> None:
         """Take the system that the units beside the numbers name."""
-        units_used: list[tuple[str, str]] = []
         for name, value in self.given.items():
             if any(map(str.isdigit, str(value))) and not str(value).startswith(ESTIMATE):
                 with self._naming(name):
-                    units_used += units_in(name, value) if isinstance(value, str) else []
+                    self.units[name] = units_in(name, value) if isinstance(value, str) else []
         with self._naming(""):
-            units = system_using(units_used)
+            units = system_using([unit for units in self.units.values() for unit in units])
         self.view, self.is_inferred = replace(self.view, units=units), bool(units)
 
     def _read_entries(self) -> None:
@@ -388,7 +367,7 @@ class _Reader:
             return Amount.exactly(PIVOT, to_text(PIVOT))
         amount = read(name, value, self.view)
         is_measured = quantity(name).unit in DIMENSIONS and amount.value
-        if self.is_inferred and is_measured and not units_in(name, value):
+        if self.is_inferred and is_measured and not self.units.get(name):
             raise UserError(
                 f"{name} = {value} has no unit, and other values have; add one, or "
                 f'units = "{self.view.units}" for numbers without (--units {self.view.units})'
@@ -468,15 +447,12 @@ class _Reader:
         share = self.entries["MU"].value
         scene = {name: _double(text) for name, text in texts.items()}
         values, missing = evaluate(scene, ["MUC"])
-        if missing:
-            names = " ".join(missing["MUC"])
-            if {"MA", "MB"} <= {*texts}:  # else it is a table's, whose rows have the rest
-                self.remarks.append(f"MU = {self.given['MU']} needs {names}: it is not computed")
-            return {}
-        critical = float(values["MUC"])
+        critical = float(values.get("MUC", math.nan))
         mu = share * abs(critical)
         if not math.isfinite(mu):
-            self.remarks.append(f"MU = {self.given['MU']}: there is no critical friction")
+            if {"MA", "MB"} <= {*texts}:  # else it is a table's, whose rows have the rest
+                names = " ".join(missing.get("MUC", ["a critical friction"]))
+                self.remarks.append(f"MU = {self.given['MU']} needs {names}: it is not computed")
             return {}
         self.remarks.append(
             f"MU = {mu:.6g} is {100 * share:g} % of the critical friction {abs(critical):.6g}"

@@ -17,7 +17,7 @@ from typing import Any
 
 from ..errors import UserError
 from ..names import INERTIA, MASS
-from .units import POUND, SYSTEMS, View, unit_of
+from .units import POUND, View, unit_of
 
 MIN_WEIGHT = 1500  # lb; cars of the fitted sample lie between these two
 MAX_WEIGHT = 6000  # lb
@@ -90,16 +90,8 @@ def estimate(name: str, mass: float, sizes: Sequence[float], view: View) -> tupl
         )
     else:
         value = inertia_of_weight(pounds, view)
-        rule = f"{_weight_rule(view)}, for passenger cars; 6 to 29 % high on seven of them"
+        rule = (
+            f"{SLOPE} times the weight in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
+            "6 to 29 % high on seven of them"
+        )
     return float(f"{value:.4g}"), rule
-
-
-def _weight_rule(view: View) -> str:
-    """Return the rule from the weight in the units of a view."""
-    shown = SYSTEMS[view.units].shown
-    pounds = float(unit_of(MASS, shown[MASS]).size / POUND)
-    size = float(unit_of(INERTIA, shown[INERTIA]).size / unit_of(INERTIA, "lb-ft-s2").size)
-    return (
-        f"{SLOPE * pounds / size:.4g} times the mass in {shown[MASS]}, "
-        f"less {OFFSET / size:.4g} {shown[INERTIA]}"
-    )

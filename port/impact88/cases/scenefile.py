@@ -7,12 +7,11 @@ from __future__ import annotations
 import datetime
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..errors import UserError, quoted
-from ..names import CHAPTER, DEFAULT_M, RESULTS, SCENE
-from .motion import OWN_AXES
+from ..names import CHAPTER, RESULTS, SCENE
 from .units import PLAIN, View
 
 ABOUT = ("title", "case", "examiner", "date", "units", "axes", "headings", "correlations")
@@ -83,17 +82,13 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
     return texts, places
 
 
-def write_toml(
-    texts: Mapping[str, str], names: Iterable[str] = SCENE, heading: str = "", view: View = PLAIN
-) -> str:
+def write_toml(texts: Mapping[str, str], heading: str = "", view: View = PLAIN) -> str:
     """Return a commented scene file.
 
     Parameters
     ----------
     texts : mapping of str to str
-        Entries as written; those about the file come first.
-    names : iterable of str, optional
-        Entries to have in any case, empty where ``texts`` lacks them.
+        Entries as written; those about the file come first, then those of a scene.
     heading : str, optional
         Lines of comment for the top.
     view : View, optional
@@ -104,20 +99,17 @@ def write_toml(
     str
         The file; `read_toml` gives the texts back.
     """
-    lines = [f"# {line}".rstrip() for line in heading.splitlines()]
-    lines += [""] if lines else []
-    lines += [f"{n} = {_toml_text(texts[n])}" for n in ABOUT if texts.get(n)]
-    others = [n for n in texts if n not in ABOUT and not n.endswith(SOURCE)]
-    for name in dict.fromkeys((*names, *others)):
-        if name not in texts and (name in SCENE and _is_replaced(name, texts)):
+    lines = [f"# {line}".rstrip() for line in heading.splitlines()] + [""] * bool(heading)
+    names = dict.fromkeys((*ABOUT, *SCENE, *texts))
+    for name in dict.fromkeys(entry for n in names for entry in (n, n + SOURCE)):
+        if name not in texts:
             continue
-        text = texts.get(name, DEFAULT_M if name == "M" else "")
+        text = texts[name]
         entry = f"{name} = {text if _PLAIN_TOML.fullmatch(text) else _toml_text(text)}"
         row = INPUTS.get(name)
-        label = f" [{view.label(name)}]" if row else ""
-        lines.append(f"{entry:<20} # {row.meaning}{label}" if row else entry)
-        if name + SOURCE in texts:
-            lines.append(f"{name}{SOURCE} = {_toml_text(texts[name + SOURCE])}")
+        lines.append(
+            f"{entry:<20} # {row.meaning} [{view.unit(name) or row.unit}]" if row else entry
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -129,11 +121,6 @@ def _toml_text(text: str) -> str:
     """Return a text as a one-line TOML string."""
     line = "".join(c if c.isprintable() else " " for c in text)
     return '"{}"'.format(line.replace("\\", "\\\\").replace('"', '\\"'))
-
-
-def _is_replaced(name: str, texts: Mapping[str, str]) -> bool:
-    """Return True for DA PA (DB PB) where the contact point is given in the vehicle's own axes."""
-    return name[0] in "DP" and any(n in texts for n in OWN_AXES.get(name[1:], ()))
 
 
 class Template(NamedTuple):
@@ -225,4 +212,4 @@ def template(kind: str = "planar", units: str = "us") -> str:
     title, command, advice, _ = TEMPLATES[kind]
     view = View.of(units=units)
     heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 {command} FILE"
-    return write_toml({**view.words(), **TEMPLATES[kind].entries}, (), heading, view)
+    return write_toml({**view.words(), **TEMPLATES[kind].entries}, heading, view)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import isfinite
@@ -236,8 +236,7 @@ class View:
 
     def words(self) -> dict[str, str]:
         """Return the entries of a file with this view, without defaults."""
-        words = {"units": self.units, "axes": self.axes, "headings": self.headings}
-        return {name: word for name, word in words.items() if word}
+        return {name: word for name, word in asdict(self).items() if word}
 
     def base_size(self, rule: str) -> Fraction:
         """Return the size of the base unit of a rule in m, kg, s."""
@@ -249,10 +248,6 @@ class View:
     def unit(self, name: str) -> str:
         """Return the unit a quantity is shown in; "" for a pure number and without units."""
         return SYSTEMS[self.units].shown.get(quantity(name).unit, "") if self.units else ""
-
-    def label(self, name: str) -> str:
-        """Return the unit of a quantity, or without units its rule, such as "length/time"."""
-        return self.unit(name) or quantity(name).unit
 
     def heading(self, name: str) -> str:
         """Return the heading of a column, such as ``DVA [mph]``."""
@@ -291,14 +286,11 @@ class View:
         factor, offset = self.map(name)
         if (factor == 1 and not offset) or not isfinite(value) or (name, value) == ("MUP", PIVOT):
             return to_text(value)
-        shown = (Fraction(value) - offset) / factor
-        if self._turns(name):
-            shown %= 360
+        exact = (Fraction(value) - offset) / factor
+        turns = exact // 360 * 360 if self._turns(name) else 0
         for places in (15, 16, 17):
-            text = to_text(float(f"{float(shown):.{places}g}"))
-            difference = offset + factor * Fraction(text) - Fraction(value)
-            turns = 360 * round(difference / 360) if self._turns(name) else 0
-            if float(Fraction(value) + difference - turns) == value:
+            text = to_text(float(f"{float(exact - turns):.{places}g}"))
+            if float(offset + factor * (Fraction(text) + turns)) == value:
                 break
         return text
 
