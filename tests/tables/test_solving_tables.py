@@ -159,7 +159,7 @@ def test_constants_fill_and_replace_columns() -> None:
     assert out["MU"].tolist() == [-10, -10]
     assert not solved(scene(2), "VAX", case=Case.of({"MU": ""}), replaced=["MU"])[1]
     units = {f"{n} [{_units(n)}]" if _units(n) else n: c for n, c in columns.items() if n != "UX"}
-    with pytest.raises(UserError, match="UX = 3 has no unit, and the columns have"):
+    with pytest.raises(UserError, match="UX = 3 has no unit, and other values have"):
         solved(units, "VAX", case=Case.loads("UX = 3\nMU = 0.5"))
 
 

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 ESTIMATE = "estimate"
 COURSE = "course"
 LOCKED = "locked"
-BARRIER = to_text(math.inf)  # mass and inertia of a barrier among the texts
 OPTIONAL_OF_POINTS = "DA DB PA PB TA TB IA IB EM GA E MU WA WB".split()
 """Inputs that a scene of point masses need not have."""
 MOVES = ("CX", "CY")
@@ -152,6 +151,7 @@ class Case:
         source: str = "scene",
         view: View = PLAIN,
         places: Mapping[str, str] | None = None,
+        is_inferred: bool = False,
     ) -> Case:
         """Return the case of entries by name.
 
@@ -166,6 +166,8 @@ class Case:
             The view of entries that name none.
         places : mapping of str to str, optional
             Places of entries for messages.
+        is_inferred : bool, default False
+            True if units beside other values name the view: a number without is refused.
 
         Raises
         ------
@@ -173,7 +175,7 @@ class Case:
             For an unknown name, a text that is not an amount, units of two systems, a bare number
             among units, and entries that contradict one another.
         """
-        return _Reader(entries, source, view, places or {}).case()
+        return _Reader(entries, source, view, places or {}, is_inferred).case()
 
     def with_(
         self, changes: Mapping[str, Any] | None = None, where: str = "", **entries: Any
@@ -220,11 +222,7 @@ class Case:
     @property
     def numbers(self) -> dict[str, float]:
         """The scene's nominal values in base units, for `mechanics.solve`."""
-        return {
-            name: float(text) if text == BARRIER else to_double(text)
-            for name, text in self.texts.items()
-            if name not in self.omitted
-        }
+        return {n: _double(text) for n, text in self.texts.items() if n not in self.omitted}
 
     @property
     def ranges(self) -> tuple[str, ...]:
@@ -282,7 +280,12 @@ class _Reader:
     """The reading of a case's entries."""
 
     def __init__(
-        self, entries: Mapping[str, Any], source: str, view: View, places: Mapping[str, str]
+        self,
+        entries: Mapping[str, Any],
+        source: str,
+        view: View,
+        places: Mapping[str, str],
+        is_inferred: bool,
     ) -> None:
         if not isinstance(entries, Mapping) or not all(isinstance(n, str) for n in entries):
             raise UserError(f"{quoted(entries)}: expected a mapping of names to values")
@@ -296,8 +299,7 @@ class _Reader:
         self.sizes: dict[str, Amount] = {}
         self.estimated: list[str] = []
         self.remarks: list[str] = []
-        self.is_inferred = False
-        self.units: dict[str, list[tuple[str, str]]] = {}
+        self.is_inferred = is_inferred
 
     def case(self) -> Case:
         """Return the case."""
@@ -340,12 +342,13 @@ class _Reader:
 
     def _infer_units(self) -> None:
         """Take the system that the units beside the numbers name."""
+        units_used: list[tuple[str, str]] = []
         for name, value in self.given.items():
             if any(map(str.isdigit, str(value))) and not str(value).startswith(ESTIMATE):
                 with self._naming(name):
-                    self.units[name] = units_in(name, value) if isinstance(value, str) else []
+                    units_used += units_in(name, value) if isinstance(value, str) else []
         with self._naming(""):
-            units = system_using([unit for units in self.units.values() for unit in units])
+            units = system_using(units_used)
         self.view, self.is_inferred = replace(self.view, units=units), bool(units)
 
     def _read_entries(self) -> None:
@@ -367,7 +370,7 @@ class _Reader:
             return Amount.exactly(PIVOT, to_text(PIVOT))
         amount = read(name, value, self.view)
         is_measured = quantity(name).unit in DIMENSIONS and amount.value
-        if self.is_inferred and is_measured and not self.units.get(name):
+        if self.is_inferred and is_measured and not units_in(name, value):
             raise UserError(
                 f"{name} = {value} has no unit, and other values have; add one, or "
                 f'units = "{self.view.units}" for numbers without (--units {self.view.units})'

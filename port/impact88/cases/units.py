@@ -294,11 +294,11 @@ class View:
                 break
         return text
 
-    def shown_ends(self, name: str, low: Any, high: Any) -> tuple[Any, Any]:
+    def shown_ends(self, name: str, low: float, high: float) -> tuple[float, float]:
         """Return two limits as shown, the lower first; directions are not reduced to one turn."""
         factor, offset = (float(x) for x in self.map(name))
-        ends = (low - offset) / factor, (high - offset) / factor
-        return ends if factor > 0 else ends[::-1]
+        first, second = sorted((float(end) - offset) / factor for end in (low, high))
+        return first, second
 
     def _turns(self, name: str) -> bool:
         """Return True for directions that are shown from 0 to 360 degrees."""

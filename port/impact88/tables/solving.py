@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cases.amounts import Amount, normalize, read
+from ..cases.amounts import Amount, read
 from ..cases.case import COURSE, MAX_TYPED, OPTIONAL_OF_POINTS, Case
 from ..cases.estimates import estimate
 from ..cases.plausibility import implausible
@@ -205,7 +205,9 @@ class Solver:
             self.view = _view(headings, case.view)
         except UserError as error:
             raise UserError(str(error), table.where) from None
-        self.case = case = _in_view(case, self.view)
+        if self.view != case.view:
+            case = Case.of(case.written, case.source, self.view, case.places, is_inferred=True)
+        self.case = case
         self.replaced = {*replaced} & {*case.entries}
         self.columns = {n: h for n, h in headings.items() if n in SCENE and n not in self.replaced}
         self.kept = {
@@ -540,17 +542,3 @@ def _view(headings: Mapping[str, tuple[str, str]], view: View) -> View:
             f"--units {system} for columns without"
         )
     return View(system, view.axes, view.headings)
-
-
-def _in_view(case: Case, view: View) -> Case:
-    """Return the case of a table's constants in the table's view. Raises UserError for a scene
-    file's bare numbers beside columns with units."""
-    if case.view == view:
-        return case
-    for name, text in case.written.items():
-        is_measured = name in SCENE and SCENE[name].unit in DIMENSIONS
-        is_bare = isinstance(text, str) and normalize(text)[-1:].isdigit()
-        if is_measured and is_bare and case.place(name) != "--set":
-            message = f'{name} = {text} has no unit, and the columns have; expected units = "..."'
-            raise UserError(message, case.place(name))
-    return Case.of(case.written, case.source, view, case.places)

@@ -68,7 +68,7 @@ def _shown_digits(case: Case, name: str) -> str:
 def _values(case: Case, name: str, text: str) -> list[str]:
     """Return the texts that a value runs through, as shown. Raises UserError."""
     fault = f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51"
-    ends, count = text.split(":")[:-1], text.split(":")[-1].strip()
+    *ends, count = text.split(":")
     if len(ends) != 2 or not count.isdecimal() or not 1 <= int(count) <= MAX_SCENES:
         raise UserError(fault)
     amounts = [case.with_({name: end}, f"--sweep {name}").entries.get(name) for end in ends]
