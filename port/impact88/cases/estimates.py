@@ -91,7 +91,7 @@ def estimate(name: str, mass: float, sizes: Sequence[float], view: View) -> tupl
     else:
         value = inertia_of_weight(pounds, view)
         rule = (
-            f"{SLOPE} times the weight in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
+            f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
             "6 to 29 % high on seven of them"
         )
     return float(f"{value:.4g}"), rule

@@ -53,15 +53,15 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
             place = f"{source}, line {number}"
             raise UserError(f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE", place)
     places: dict[str, int] = {}
-    repeated = ""
+    repetition = ""
     for number, line in enumerate(lines, 1):
         if (match := _KEY.match(line)) and places.setdefault(match[1], number) != number:
-            repeated = f"; line {number} has {match[1]} again"
+            repetition = f"; line {number} has {match[1]} again"
     try:
         values = tomllib.loads(text, parse_float=str)
     except tomllib.TOMLDecodeError as error:
         advice = "; expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
-        raise UserError(f"is not TOML: {error}{repeated}{advice}", source) from None
+        raise UserError(f"is not TOML: {error}{repetition}{advice}", source) from None
     except (RecursionError, ValueError):  # nested deeply; a whole number of 4,300 digits
         raise UserError("is not a scene; expected one NAME = VALUE a line", source) from None
     texts: dict[str, str] = {}

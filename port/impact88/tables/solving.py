@@ -50,7 +50,7 @@ class BadRow(NamedTuple):
 
 @dataclass
 class Solved:
-    """What became of a table.
+    """Counts of a table's rows, and what to say of them.
 
     Attributes
     ----------
@@ -424,10 +424,10 @@ class _Rows:
         for at in self.bad:
             for column in texts.values():
                 column[at] = "6"
-        played = replay({name: column or ["6"] for name, column in texts.items()})
-        results = {name: played.floats(name) for name in self.solver.results}
-        results["ERROR"] = np.where(played.zero_determinant, ZERO_DETERMINANT, played.error)
-        results["LINE"] = np.array(played.line)
+        outcome = replay({name: column or ["6"] for name, column in texts.items()})
+        results = {name: outcome.floats(name) for name in self.solver.results}
+        results["ERROR"] = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
+        results["LINE"] = np.array(outcome.line)
         return {name: values[: self.count] for name, values in results.items()}
 
     def _texts(self, name: str) -> list[str]:
@@ -472,11 +472,11 @@ class _Rows:
 
 def _refusal(scene: Mapping[str, float]) -> tuple[str, str] | None:
     """Return a value that no impact has, and why; None for a scene without one."""
-    unused = UNUSED_BY_POINTS if scene["M"] == 4 else ()
-    used = {name: value for name, value in scene.items() if name not in unused}
-    barriers = {name for name in INERTIAS if used.get(name) == math.inf}
+    ignored = UNUSED_BY_POINTS if scene["M"] == 4 else ()
+    numbers = {name: value for name, value in scene.items() if name not in ignored}
+    barriers = {name for name in INERTIAS if numbers.get(name) == math.inf}
     faults = [("M", scene["M"] not in (4, 6), "is neither 4 nor 6")]
-    for name, value in used.items():
+    for name, value in numbers.items():
         is_infinite = not math.isfinite(value) and name not in barriers
         faults.append((name, name in INERTIAS and not value > 0, "is not above 0"))
         faults.append((name, is_infinite, "is no finite number"))

@@ -119,18 +119,18 @@ def _split_rows(text: str, delimiter: str, where: str) -> Iterator[list[str]]:
 
 def _chunks(source: Source, where: str) -> Iterator[bytes]:
     """Yield the bytes of a CSV file in chunks that end with a row's end outside quotes."""
-    rest = b""
+    tail = b""
     while data := source.read(CHUNK_BYTES):
-        rest += data
-        end = rest.rfind(b"\n") + 1
-        if end and rest.count(b'"', 0, end) % 2 == 0:
-            yield rest[:end].replace(b"\r\n", b"\n")
-            rest = rest[end:]
-        elif len(rest) > 4 * CHUNK_BYTES:
+        tail += data
+        end = tail.rfind(b"\n") + 1
+        if end and tail.count(b'"', 0, end) % 2 == 0:
+            yield tail[:end].replace(b"\r\n", b"\n")
+            tail = tail[end:]
+        elif len(tail) > 4 * CHUNK_BYTES:
             raise UserError("has a line or a quoted text that does not end; expected CSV", where)
     source.close()
-    if rest:
-        yield rest.replace(b"\r\n", b"\n")
+    if tail:
+        yield tail.replace(b"\r\n", b"\n")
 
 
 def _recode(data: bytes, where: str, encoding: str) -> bytes:
