@@ -18,7 +18,7 @@ from ..cases.case import COURSE, MAX_TYPED, OPTIONAL_OF_POINTS, Case
 from ..cases.estimates import estimate
 from ..cases.plausibility import implausible
 from ..cases.units import DIMENSIONS, PLAIN, View, system_using, unit_of
-from ..decimals import to_double, to_doubles, to_text
+from ..decimals import exact, to_double, to_doubles, to_text
 from ..errors import UserError, quoted
 from ..files import replacing
 from ..mechanics.solve import evaluate, solve
@@ -336,7 +336,8 @@ class _Rows:
         self.amounts[name] = amounts = self._amounts(
             name, {at: cells[at] for at in np.flatnonzero(is_odd).tolist()}, self._amount
         )
-        values = offset + factor * shown
+        is_base = factor == 1 and not offset
+        values = shown.copy() if is_base else offset + factor * shown
         if amounts:
             shown = shown.copy()
         for at, amount in amounts.items():
@@ -451,13 +452,22 @@ class _Rows:
             yield from [text] * self.count
             return
         factor, offset = solver.view.map(name, solver.columns[name][1])
-        shown, amounts = self.shown[name], self.amounts[name]
+        is_base, is_turned = factor == 1 and not offset, abs(factor) == 1
+        is_plain = np.isfinite(self.shown[name]).tolist()
         for at, cell in enumerate(self.cells(name)):
-            amount = amounts.get(at)
-            if amount is None and math.isfinite(shown[at]):
-                text = cell.strip() if isinstance(cell, str) else to_text(float(cell))
-                amount = Amount.exactly(float(shown[at]), text).mapped(factor, offset)
-            yield "" if amount is None or amount.share else amount.typed
+            if at in self.amounts[name]:
+                amount = self.amounts[name][at]
+                yield "" if amount.share else amount.typed
+                continue
+            text = cell.strip().upper() if isinstance(cell, str) else ""
+            if is_plain[at] and not text:
+                text = to_text(float(cell))
+            if not is_plain[at] or is_base:
+                yield text * is_plain[at]
+            elif is_turned:  # digits are kept where only the sign changes
+                yield Amount.exactly(to_double(text), text).mapped(factor, offset).typed
+            else:
+                yield to_text(float(offset + factor * exact(text)))
 
     def output_column(self, heading: str) -> Column:
         """Return a column of the table for the output."""
