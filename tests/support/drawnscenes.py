@@ -7,7 +7,7 @@ from html import unescape
 from typing import NamedTuple
 
 from impact88.cases import Case
-from impact88.report.labels import text_width
+from impact88.report.paper import text_width
 
 SIDE = {
     "units": "us",
@@ -89,7 +89,7 @@ def texts_of(svg: str) -> list[Placed]:
     placed = []
     for x, y, anchor, size, look, content in re.findall(pattern, svg):
         text = unescape(re.sub("<[^>]*>", "", content))
-        width, height = text_width(text, float(size), "bold" in look), float(size)
+        width, height = text_width(text, float(size)), float(size)
         left = float(x) - (width / 2 if anchor == "middle" else 0)
         top = float(y) - 0.78 * height
         placed.append(Placed(text, left, top, left + width, top + height))

@@ -223,7 +223,7 @@ def write(answer: Answer, path: str) -> None:
     if ending == ".html":
         data = case_page(answer).encode()
     else:
-        svg = draw(answer, titled=True)
+        svg = draw(answer)
         data = to_png(svg) if ending == ".png" else svg.encode()
     with replacing(path, "wb") as file:
         file.write(data)
