@@ -42,7 +42,6 @@ LARGEST = 1e100  # the largest number drawn: products of some must be doubles
 WIDTH = 480.0  # px of the picture
 MARGIN = 46.0  # px around the shapes, for labels
 TALLEST = 360.0  # px of the shapes
-LEGEND = 140.0  # px of legend and notes below them
 SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of the longest body
 FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
 PLANE_REACH = 0.62  # half the contact plane, likewise
@@ -52,6 +51,14 @@ CORNERS = np.array([0.5 - 0.5j, 0.5 + 0.5j, -0.5 + 0.5j, -0.5 - 0.5j, 0.5 - 0.5j
 FRONT = np.array([0.25 - 0.3j, 0.4, 0.25 + 0.3j])
 PLANS = {"disc": [arc(0.5)], "barrier": [CORNERS], "vehicle": [CORNERS, FRONT]}
 """Lines of each kind of body: fractions of length and i times width from the center."""
+
+
+AXES = {
+    (False, False): "x is to the right, y up; spins are positive counterclockwise.",
+    (True, False): "x is to the right, y down; spins are positive clockwise.",
+    (True, True): "x is up, y to the right; spins are positive clockwise.",
+}
+"""Directions of axes, by whether they are SAE's and x is north."""
 
 
 class Look(NamedTuple):
@@ -172,7 +179,7 @@ def _size(name: str, values: Mapping[str, float], case: Case) -> tuple[float, fl
     """Return length and width of a body, and words: as measured, or by its class of weight.
 
     A case without named units is taken to be in the chapter's."""
-    view = case.view if case.view.units else View.of("chapter")
+    view = case.view if case.view.units else View.of(units="chapter")
     meter, kilogram = (float(view.base_size(rule)) for rule in (LENGTH, MASS))
     mass = kilogram * values.get(f"M{name}", UNKNOWN_MASS / kilogram)
     _, words, *sizes = next(row for row in CLASSES if mass <= row[0])
@@ -251,9 +258,8 @@ class _Scene:
                 if abs(velocity) > TINY * self.speed:
                     run = SPEED_REACH * self.size / self.speed * velocity
                     start = body.center - run * (look is BEFORE)
-                    yield self._arrow(
-                        look, body.name, abs(velocity), np.array([start, start + run])
-                    )
+                    ends = np.array([start, start + run])
+                    yield self._arrow(look, body.name, abs(velocity), ends)
 
     def _spins(self) -> Iterator[Arrow]:
         """Yield the spins of vehicles as arcs around their centers, away from the contact."""
@@ -306,7 +312,8 @@ class _Scene:
     def draw_legend(self) -> None:
         """Draw legend, scale and notes below the scene."""
         corner = complex(14, self.paper.size.imag + 6)
-        self.paper.size += 1j * LEGEND
+        notes = textwrap.wrap(" ".join(self._notes()), 72)
+        self.paper.size += 1j * (84 + 14 * len(notes))
         places = [corner + 240 * (k // 4) + 17j * (k % 4) for k in range(8)]
         for look, start in zip(LEGEND_ROWS, places, strict=False):
             colour = COLOURS.get(look.letter, BLACK)
@@ -319,7 +326,7 @@ class _Scene:
         bar = np.array([start - 3j, start + 3j, start, end, end - 3j, end + 3j])
         self.paper.line(bar, BLACK, 1.2)
         self.paper.text(end + 10 + 4j, f"{amount:g} {self.view.unit('DA')}", BLACK, 11)
-        for k, line in enumerate(textwrap.wrap(" ".join(self._notes()), 72)):
+        for k, line in enumerate(notes):
             self.paper.text(corner + 78j + 14j * k, line, BLACK, 10)
 
     def _notes(self) -> Iterator[str]:
@@ -327,11 +334,9 @@ class _Scene:
         speed, impulse, spin = (self.view.unit(name) for name in ("SA", "P", "WA"))
         if speed:
             yield f"Velocities in {speed}, impulse in {impulse}, spins in {spin}."
-        right = "x up and y to the right" if self.turn == 1j else "x to the right and y down"
-        yield f"Axes: {right}," if self.is_sae else "Axes: x to the right and y up,"
-        yield f"spins positive {'clockwise' if self.is_sae else 'counterclockwise'}."
         if self.view.headings:
             yield "North is up."
+        yield AXES[self.is_sae, self.turn == 1j]
         second = self.bodies[1]
         if self.impulse and second.faces:
             yield f"B is struck from {second.hour(-self.impulse)}."

@@ -9,10 +9,10 @@ from __future__ import annotations
 import io
 import os
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from flask import Flask, Request, Response, abort, redirect, render_template, request
+from flask import Flask, Request, Response, abort, render_template, request
 from jinja2 import ChoiceLoader
 from werkzeug.exceptions import HTTPException
 
@@ -25,7 +25,7 @@ from ..program.scene import sample
 from ..report.answers import Answer, ask
 from ..report.casepage import case_page, drawing_of, environment, verification_page
 from ..report.exhibits import Exhibit, examine
-from .guard import HEADERS, MAX_BODY, REPORT_POLICY, refusal
+from .guard import HEADERS, MAX_BODY, PAGE_POLICY, REPORT_POLICY, refusal
 from .questions import answer_in_time
 
 KINDS = {name: kind for name, kind in TEMPLATES.items() if kind.command == "solve"}
@@ -43,11 +43,8 @@ class MemoryRequest(Request):
         return io.BytesIO()
 
 
-def application(port: int, token: str, entry: str = "") -> Flask:
-    """Return the application that answers at 127.0.0.1:``port`` below ``token``.
-
-    ``entry``: a path that leads to the first page, once.
-    """
+def application(port: int, token: str) -> Flask:
+    """Return the application that answers at 127.0.0.1:``port`` below ``token``."""
     app = Flask(__name__, static_url_path=f"/{token}/static")
     app.request_class = MemoryRequest
     app.config.update(MAX_CONTENT_LENGTH=MAX_BODY, MAX_FORM_MEMORY_SIZE=MAX_BODY)
@@ -56,54 +53,49 @@ def application(port: int, token: str, entry: str = "") -> Flask:
     app.jinja_loader = ChoiceLoader([app.jinja_loader, reports.loader])  # type: ignore[list-item]
     app.jinja_env.filters.update(reports.filters)
     app.jinja_env.globals.update(root=f"/{token}", inputs=INPUTS, kinds=KINDS, headings=HEADINGS)
-    entries = {f"/{entry}"} - {"/"}
 
     @app.before_request
-    def check() -> Response | None:
-        is_entry = request.path in entries
-        path = f"/{token}/" if is_entry else request.path
-        status = refusal(dict(request.headers), request.method, path, port=port, token=token)
+    def check() -> None:
+        status = refusal(
+            dict(request.headers), request.method, request.path, port=port, token=token
+        )
         if status:
             abort(status)
-        entries.discard(request.path)
-        return redirect(path, 303) if is_entry else None  # type: ignore[return-value]
 
     @app.after_request
     def protect(response: Response) -> Response:
-        policy = {n: t for n, t in response.headers if n == "Content-Security-Policy"}
-        response.headers.update(HEADERS | policy)
+        response.headers.setdefault("Content-Security-Policy", PAGE_POLICY)
+        response.headers.update(HEADERS)
         return response
 
-    app.register_error_handler(UserError, lambda error: _problem(str(error), 422))
+    app.register_error_handler(UserError, _problem)
     app.register_error_handler(Exception, _internal_error)
-    for name, view in PAGES.items():
-        app.add_url_rule(f"/{token}/{name}", name or "printout", view)
-    for name, view in FORMS.items():
-        app.add_url_rule(f"/{token}/{name}", name, view, methods=["POST"])
+    for path, page in {"": printout, "collision": collision, "1988": program}.items():
+        app.get(f"/{token}/{path}")(page)
+    for reply in (verify, verification, fields, answer, report, scene, printed):
+        app.post(f"/{token}/{reply.__name__}")(reply)
     return app
 
 
-def _problem(message: str, status: int) -> tuple[str, int]:
+def _problem(error: Exception, status: int = 422) -> tuple[str, int]:
     """Return the message on a problem."""
-    return _part("problem.html", message=message), status
+    return _show("problem.html", message=printable(str(error))), status
 
 
 def _internal_error(error: Exception) -> Any:
-    """Return the message on an error of this program, with its place; refusals as they are."""
+    """Return the message on an error of this program; refusals as they are."""
     if isinstance(error, HTTPException):
         return error
     if os.environ.get("IMPACT88_DEBUG") == "1":
         traceback.print_exception(error)
-    step = traceback.extract_tb(error.__traceback__)[-1]
-    message = f"{error!r} at {os.path.basename(step.filename)}:{step.lineno}"
-    return _problem(printable(f"internal error; please report it: {message}"), 500)
+    message = f"internal error; please report it: {error!r} (IMPACT88_DEBUG=1 prints its place)"
+    return _problem(RuntimeError(message), 500)
 
 
-def _part(name: str, page: str = "", **context: Any) -> str:
-    """Return a part of a page to htmx, and a whole page to a browser without scripts."""
-    if "HX-Request" in request.headers:
-        return render_template(name, **context)
-    return render_template("layout.html", part=name, page=page, **context)
+def _show(part: str, whole: str = "layout.html", **context: Any) -> str:
+    """Return a part of a page to htmx, and the whole page to a browser without scripts."""
+    name = part if "HX-Request" in request.headers else whole
+    return render_template(name, part=part, **context)
 
 
 def _report(page: str) -> Response:
@@ -119,7 +111,7 @@ def _upload() -> tuple[str, bytes] | None:
 
 def printout() -> str:
     """Return the page for printouts."""
-    return render_template("printout.html", page="printout")
+    return render_template("printout.html")
 
 
 def _exhibits() -> list[Exhibit]:
@@ -133,7 +125,7 @@ def _exhibits() -> list[Exhibit]:
 
 def verify() -> str:
     """Return the verdicts on the printouts of a text, picture or PDF."""
-    return _part("verdicts.html", "printout", exhibits=_exhibits())
+    return _show("verdicts.html", exhibits=_exhibits())
 
 
 def verification() -> Response:
@@ -145,7 +137,7 @@ def verification() -> Response:
 
 def collision() -> str:
     """Return the page for collisions."""
-    return render_template("collision.html", page="collision", **_fields({"units": "us"}))
+    return render_template("collision.html", **_fields({"units": "us"}))
 
 
 def _fields(texts: Mapping[str, str], kind: str = DEFAULT_KIND) -> dict[str, Any]:
@@ -181,21 +173,18 @@ def fields() -> str:
         source, data = upload
         texts, _ = read_toml(decode(data, source), source)
         Case.of(texts, source)
+        # the kind that has most of its names, and then of its entries
         kind = max(KINDS, key=lambda name: _likeness(texts, KINDS[name].entries))
     else:
         former = KINDS.get(request.form.get("was", ""), KINDS[DEFAULT_KIND]).entries
         texts = {n: text for n, text in _texts().items() if text != former.get(n)}
         kind = request.form.get("kind", "")
-    context = _fields(texts, kind)
-    if "HX-Request" in request.headers:
-        return render_template("fields.html", **context)
-    return render_template("collision.html", page="collision", **context)
+    return _show("fields.html", "collision.html", **_fields(texts, kind))
 
 
-def _likeness(texts: Mapping[str, str], entries: Mapping[str, str]) -> tuple[int, int, int]:
-    """Return what a file has in common with a kind: names, whole entries, and no others."""
-    common = {*texts} & {*entries}
-    return len(common), len({*texts.items()} & {*entries.items()}), -len(entries)
+def _likeness(texts: Mapping[str, str], entries: Mapping[str, str]) -> tuple[int, int]:
+    """Return how many names, and how many whole entries, a file has in common with a kind."""
+    return len(texts.keys() & entries.keys()), len(texts.items() & entries.items())
 
 
 def _case() -> Case:
@@ -213,7 +202,7 @@ def answer() -> str:
     """Return the answer to a form, with its drawing."""
     result = _answer()
     drawing, undrawn = drawing_of(result)
-    return _part("answer.html", "collision", answer=result, drawing=drawing, undrawn=undrawn)
+    return _show("answer.html", answer=result, drawing=drawing, undrawn=undrawn)
 
 
 def report() -> Response:
@@ -230,28 +219,12 @@ def scene() -> Response:
 def program() -> str:
     """Return the page of the 1988 program."""
     number = request.args.get("sample", "")
-    texts = dict(sample(int(number))) if number in ("1", "2", "3") else {}
-    return render_template("program.html", page="1988", texts=texts)
+    texts = sample(int(number)) if number in ("1", "2", "3") else {}
+    return render_template("program.html", texts=texts)
 
 
-def printed_page() -> str:
+def printed() -> str:
     """Return what the 1988 program prints for a form's case."""
     case = _case()
-    context = {"printed": answer_in_time(lambda: run(case.texts).page), "case": case}
-    if "HX-Request" in request.headers:
-        return render_template("printed.html", **context)
-    return render_template("program.html", page="1988", texts=case.texts, **context)
-
-
-PAGES = {"": printout, "collision": collision, "1988": program}
-"""Pages by their paths below the token."""
-FORMS: dict[str, Callable[[], Any]] = {
-    "verify": verify,
-    "verification": verification,
-    "fields": fields,
-    "answer": answer,
-    "report": report,
-    "scene": scene,
-    "printed": printed_page,
-}
-"""Answers to forms, likewise."""
+    page = answer_in_time(lambda: run(case.texts).page)
+    return _show("printed.html", "program.html", printed=page, case=case, texts=case.texts)

@@ -14,8 +14,9 @@ _COMMON = (
     "default-src 'none'; img-src 'self' data:; base-uri 'none'; frame-ancestors 'none'; "
     "form-action 'self'; "
 )
+PAGE_POLICY = f"{_COMMON}script-src 'self'; style-src 'self'; connect-src 'self'"
+"""Policy of a page: nothing from elsewhere runs in it."""
 HEADERS = {
-    "Content-Security-Policy": f"{_COMMON}script-src 'self'; style-src 'self'; connect-src 'self'",
     "X-Content-Type-Options": "nosniff",
     # no-referrer would make browsers send "Origin: null" with a form
     "Referrer-Policy": "same-origin",
@@ -23,7 +24,7 @@ HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
-"""Headers of every answer: nothing from elsewhere runs in a page, and nothing is kept."""
+"""Other headers of every answer: nothing is kept."""
 REPORT_POLICY = f"{_COMMON}style-src 'unsafe-inline'"
 """Policy of a report, whose one style sheet is in the page; it runs no scripts."""
 
@@ -44,13 +45,11 @@ def refusal(
     token : str
         The first part of every path.
     """
-    hosts = {f"127.0.0.1:{port}", f"localhost:{port}"}
-    if headers.get("Host", "") not in hosts:
+    hosts = [f"127.0.0.1:{port}", f"localhost:{port}"]
+    if headers.get("Host") not in hosts:
         return 403
     first = path.lstrip("/").partition("/")[0]
     if not hmac.compare_digest(first.encode("utf-8", "replace"), token.encode()):
         return 404
-    origin = headers.get("Origin", "")
-    if origin:
-        return None if origin in {f"http://{host}" for host in hosts} else 403
-    return None if method in ("GET", "HEAD") else 403
+    origin = headers.get("Origin", f"http://{hosts[0]}" if method in ("GET", "HEAD") else "")
+    return None if origin in [f"http://{host}" for host in hosts] else 403

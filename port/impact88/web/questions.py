@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from queue import Empty, SimpleQueue
+from concurrent.futures import Future
 from threading import BoundedSemaphore, Thread
 from typing import TypeVar
 
@@ -33,24 +33,21 @@ def answer_in_time(compute: Callable[[], T], seconds: float = MAX_SECONDS) -> T:
     """
     if not _places.acquire(timeout=seconds):
         raise UserError("other questions are still being computed; try again later")
-    outcome: SimpleQueue[tuple[T | None, BaseException | None]] = SimpleQueue()
+    future: Future[T] = Future()
 
     def work() -> None:
         try:
-            outcome.put((compute(), None))
+            future.set_result(compute())
         except BaseException as error:  # raised again where it was asked
-            outcome.put((None, error))
+            future.set_exception(error)
         finally:
             _places.release()
 
     # a thread cannot be stopped: one that is given up ends by itself, or with the process
     Thread(target=work, daemon=True).start()
     try:
-        result, error = outcome.get(timeout=seconds)
-    except Empty:
+        return future.result(seconds)
+    except TimeoutError:
         raise UserError(
             f"took longer than {seconds:g} s; the commands of impact88 have no time limit"
         ) from None
-    if error is not None:
-        raise error
-    return result  # type: ignore[return-value]
