@@ -20,7 +20,7 @@ import numpy as np
 from ..cases import Case, View
 from ..errors import UserError, library, printable
 from ..names import LENGTH, MASS, missing
-from .answers import Answer, clock, numbers_of
+from .answers import Answer, Number, numbers_of
 from .paper import Label, Paper, Points, arc
 
 COLOURS = {"A": "#0068a3", "B": "#bd4f00", "P": "#99356f"}
@@ -101,14 +101,10 @@ class Body(NamedTuple):
         The class or size by which it is drawn.
     center : complex
         Center of gravity.
-    front : complex
-        Unit vector from there to its front.
     length : float
         Length of its outline.
     lines : list of ndarray of complex
         Its outline; that of a vehicle, then the mark of its front.
-    faces : bool
-        True if its front is given.
     before, after : complex
         Velocities, NaN if not known.
     """
@@ -116,16 +112,10 @@ class Body(NamedTuple):
     name: str
     words: str
     center: complex
-    front: complex
     length: float
     lines: list[Points]
-    faces: bool
     before: complex
     after: complex
-
-    def hour(self, force: complex) -> str:
-        """Return the hour of the body's clock from which a force comes; 12 is its front."""
-        return clock(math.degrees(cmath.phase(self.front / -force)))
 
 
 def draw(answer: Answer) -> str:
@@ -200,9 +190,9 @@ def _body(name: str, values: Mapping[str, float], case: Case) -> Body:
     if values.get("M") == 4:
         kind, length, words = "disc", width, "as a disc (point mass)"
     inward = side * _unit(values["GA"])  # from the contact plane to the body
-    faces = f"T{name}" in values and f"T{name}" not in case.omitted and kind != "barrier"
     theta = values.get(f"T{name}", 0.0)
-    front = -side * _unit(theta) if faces else before or -inward
+    is_turned = f"T{name}" in values and kind != "barrier"
+    front = -side * _unit(theta) if is_turned else before or -inward
     front /= abs(front)
     lines = [front * (p.real * length + 1j * p.imag * width) for p in PLANS[kind]]
     center = side * values.get(f"D{name}", 0.0) * _unit(theta + values.get(f"P{name}", 0.0))
@@ -210,7 +200,7 @@ def _body(name: str, values: Mapping[str, float], case: Case) -> Body:
         center = inward * float((lines[0] / inward).real.max())
         words += ", moved to the contact plane"
     lines = [center + line for line in lines]
-    return Body(name, words, center, front, length, lines, faces, before, after)
+    return Body(name, words, center, length, lines, before, after)
 
 
 class _Scene:
@@ -243,12 +233,16 @@ class _Scene:
         places: Points = self.origin + self.scale * np.conj(points * self.turn)
         return places
 
-    def text(self, name: str, value: float) -> str:
-        """Return the text of a base value: the answer's own, or rounded alike."""
-        numbers = self.answer.found
-        if name not in numbers:
-            numbers = numbers_of(self.answer.case, {name: value}, {}, {})
-        return numbers[name].text
+    def number(self, name: str) -> Number:
+        """Return the number of a value: the answer's own, or rounded alike."""
+        if name in self.answer.found:
+            return self.answer.found[name]
+        return numbers_of(self.answer.case, {name: self.values[name]}, {}, {})[name]
+
+    def _hour(self, body: Body) -> str:
+        """Return the hour from which a vehicle is struck, as "11 o'clock"; "" if not known."""
+        name = f"PDOF{body.name}"
+        return self.number(name).note if name in self.values and len(body.lines) > 1 else ""
 
     def _velocities(self) -> Iterator[Arrow]:
         """Yield velocities: before the impact up to the center of a body, else from it."""
@@ -259,7 +253,8 @@ class _Scene:
                     run = SPEED_REACH * self.size / self.speed * velocity
                     start = body.center - run * (look is BEFORE)
                     ends = np.array([start, start + run])
-                    yield self._arrow(look, body.name, abs(velocity), ends)
+                    self.values[look.name.format(body.name)] = abs(velocity)
+                    yield self._arrow(look, body, ends)
 
     def _spins(self) -> Iterator[Arrow]:
         """Yield the spins of vehicles as arcs around their centers, away from the contact."""
@@ -269,12 +264,12 @@ class _Scene:
                 if abs(spin) * self.size > TINY * self.speed and len(body.lines) > 1:
                     middle, turn = cmath.phase(body.center or 1), math.copysign(2.2, spin)
                     points = arc(radius * self.size, middle - turn, middle + turn)
-                    yield self._arrow(look, body.name, spin, body.center + points)
+                    yield self._arrow(look, body, body.center + points)
 
-    def _arrow(self, look: Look, name: str, value: float, points: Points) -> Arrow:
+    def _arrow(self, look: Look, body: Body, points: Points) -> Arrow:
         """Return the arrow of a body's velocity or spin."""
-        size = self.text(look.name.format(name), value)
-        return Arrow(look, points, f"{look.letter}_{name.lower()} {size}", COLOURS[name])
+        size = self.number(look.name.format(body.name)).text
+        return Arrow(look, points, f"{look.letter}_{body.name.lower()} {size}", COLOURS[body.name])
 
     def _contact(self) -> Iterator[Arrow]:
         """Yield contact plane and impulse on A."""
@@ -282,9 +277,8 @@ class _Scene:
         yield Arrow(PLANE, plane, "t", BLACK)
         if self.impulse:
             run = FORCE_REACH * self.size * self.impulse / abs(self.impulse)
-            text = f"P {self.text('P', abs(self.impulse))}"
-            if self.bodies[0].faces:
-                text += f", {self.bodies[0].hour(self.impulse)}"
+            self.values["P"] = abs(self.impulse)
+            text = f"P {self.number('P').text}, {self._hour(self.bodies[0])}".removesuffix(", ")
             yield Arrow(IMPULSE, np.array([0, run]), text, COLOURS["P"])
 
     def draw(self) -> None:
@@ -294,7 +288,7 @@ class _Scene:
             self.paper.area(self.at(body.lines[0]), colour, 0.14)
             for line in body.lines:
                 self.paper.line(self.at(line), colour, 1.2)
-            self._dot(body.center, 2 * body.center or body.front, body.name, colour, 18)
+            self._dot(body.center, 2 * body.center or 1, body.name, colour, 18)
         # shorter arrows over longer ones, which do not move aside
         for look, points, text, colour in sorted(self.arrows, key=_length, reverse=True):
             ends = self.paper.arrow(self.at(points), colour, look.width, look.dashes)
@@ -323,8 +317,7 @@ class _Scene:
         unit = float(self.view.map("DA")[0])
         amount = float(f"{self.size / 4 / unit:.0e}")
         start, end = places[7], places[7] + amount * unit * self.scale
-        bar = np.array([start - 3j, start + 3j, start, end, end - 3j, end + 3j])
-        self.paper.line(bar, BLACK, 1.2)
+        self.paper.line(np.array([start, end]), BLACK, 3.0)
         self.paper.text(end + 10 + 4j, f"{amount:g} {self.view.unit('DA')}", BLACK, 11)
         for k, line in enumerate(notes):
             self.paper.text(corner + 78j + 14j * k, line, BLACK, 10)
@@ -337,10 +330,9 @@ class _Scene:
         if self.view.headings:
             yield "North is up."
         yield AXES[self.is_sae, self.turn == 1j]
-        second = self.bodies[1]
-        if self.impulse and second.faces:
-            yield f"B is struck from {second.hour(-self.impulse)}."
         for body in self.bodies:
+            if hour := self._hour(body):
+                yield f"{body.name} is struck from {hour}."
             yield f"{body.name} drawn {body.words}."
 
 

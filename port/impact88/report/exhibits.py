@@ -13,8 +13,13 @@ from ..printouts.sources import read_text
 
 PICTURE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"%PDF-")
 """First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
-DIFFERS, DOUBT, FOREIGN = "differs", "doubt", "foreign"
-"""Looks of marks: another number or word, one not read exactly, text that is not the program's."""
+DIFFERS = "differs"  # look of a mark: another number or word
+DOUBT = "doubt"  # one not read exactly
+FOREIGN = "foreign"  # text that is not the program's
+
+
+LOOKS = {kind: DIFFERS for kind, verdict in VERDICTS.items() if verdict is Verdict.DIFFERS}
+LOOKS[Kind.FOREIGN] = FOREIGN
 
 
 class Mark(NamedTuple):
@@ -132,28 +137,23 @@ def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
     """
     first, end = result.span
     marks: list[Mark] = []
+    place = first
     for finding in sorted(result.findings, key=lambda finding: finding.start):
-        start, stop = max(finding.start, first) - first, min(finding.stop, end) - first
-        if 0 <= start <= stop and (not marks or start >= marks[-1].stop):
-            is_adverse = VERDICTS[finding.kind] is Verdict.DIFFERS
-            look = DIFFERS if is_adverse else FOREIGN if finding.kind is Kind.FOREIGN else DOUBT
-            marks.append(Mark(start, stop, look, words.sentence_of(finding)))
+        start, stop = max(finding.start, first), min(finding.stop, end)
+        if place <= start <= stop:
+            look = LOOKS.get(finding.kind, DOUBT)
+            marks.append(Mark(start - first, stop - first, look, words.sentence_of(finding)))
+            place = stop
     _, meaning, *sentences = (line.strip() for line in words.write(result, brief=True))
     scene = " ".join(f"{name} = {text}" for name, text in result.scene.items())
-    return Exhibit(
-        source,
-        words.TITLES[result.verdict],
-        meaning,
-        result.verdict is Verdict.DIFFERS,
-        {
-            "": tuple(sentences),
-            "inputs with which it was compared": (scene,) if scene else (),
-            "errors that this page could not reveal": tuple(words.unseen_lines(result)),
-        },
-        result.text[first:end],
-        tuple(marks),
-        digest=digest,
-    )
+    sections = {
+        "": tuple(sentences),
+        "inputs with which it was compared": (scene,) if scene else (),
+        "errors that this page could not reveal": tuple(words.unseen_lines(result)),
+    }
+    title, is_adverse = words.TITLES[result.verdict], result.verdict is Verdict.DIFFERS
+    text = result.text[first:end]
+    return Exhibit(source, title, meaning, is_adverse, sections, text, tuple(marks), digest=digest)
 
 
 def _examine_picture(name: str, data: bytes) -> list[Exhibit]:

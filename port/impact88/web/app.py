@@ -155,15 +155,14 @@ def _fields(texts: Mapping[str, str], kind: str = DEFAULT_KIND) -> dict[str, Any
 
 
 def _texts() -> dict[str, str]:
-    """Return the entries of a form. Raises UserError for a line without a name and a value."""
+    """Return the entries of a form: of its fields, and of lines NAME = VALUE. Raises UserError."""
     form = request.form
     texts = {n: form[n].strip() for n in (*ABOUT, *INPUTS) if form.get(n, "").strip()}
-    for number, line in enumerate(form.get("more", "").splitlines(), 1):
-        name, separator, text = (part.strip() for part in line.partition("="))
-        if bool(name) != bool(separator):
-            raise UserError(f"{line.strip()!r}; expected NAME = VALUE", f"more, line {number}")
-        texts |= {name: text.strip("\"'")} if name else {}
-    return texts
+    lines = [line.partition("=") for line in form.get("more", "").splitlines() if line.strip()]
+    for name, separator, _ in lines:
+        if not separator:
+            raise UserError(f"{name.strip()!r}; expected NAME = VALUE", "more entries")
+    return texts | {name.strip(): text.strip(" \"'") for name, _, text in lines}
 
 
 def fields() -> str:
