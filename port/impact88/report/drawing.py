@@ -54,9 +54,9 @@ PLANS = {"disc": [arc(0.5)], "barrier": [CORNERS], "vehicle": [CORNERS, FRONT]}
 
 
 AXES = {
-    (False, False): "x is to the right, y up; spins are positive counterclockwise.",
-    (True, False): "x is to the right, y down; spins are positive clockwise.",
-    (True, True): "x is up, y to the right; spins are positive clockwise.",
+    (False, False): "Axes: x to the right, y up; spins positive counterclockwise.",
+    (True, False): "Axes: x to the right, y down; spins positive clockwise.",
+    (True, True): "Axes: x up, y to the right; spins positive clockwise.",
 }
 """Directions of axes, by whether they are SAE's and x is north."""
 

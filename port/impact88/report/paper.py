@@ -85,7 +85,8 @@ class Paper:
     def arrow(self, points: Points, colour: str, width: float, dashes: str = "none") -> Points:
         """Draw an arrow along a line, moved aside if others cover it; return its points."""
         run = points[-1] - points[0]
-        steps = 1j * run / abs(run) * np.array(SIDESTEPS)
+        sidesteps = SIDESTEPS if len(points) == 2 else SIDESTEPS[:1]  # an arc stays
+        steps = 1j * run / abs(run) * np.array(sidesteps)
         points = points + min(steps, key=lambda step: self._is_covered(points + step))
         self.arrows = np.append(self.arrows, _points_along(points))
         along = points[-1] - points[-2]
@@ -157,8 +158,8 @@ def _place(
     cost = reaches / REACH_UNIT + 1 - np.cos(turns)
     cost += _overlaps(places[..., None], ink, half).sum(axis=-1)
     cost += FORBIDDEN * ~_overlaps(places, paper / 2, paper / 2 - half)
-    for center, other in boxes:
-        cost += FORBIDDEN * _overlaps(places, center, half + other)
+    for center, box in boxes:
+        cost += FORBIDDEN * _overlaps(places, center, half + box)
     best = np.argmin(cost)
     return complex(tips.flat[best]), complex(places.flat[best])
 
