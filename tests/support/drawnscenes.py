@@ -85,9 +85,9 @@ class Placed(NamedTuple):
 
 def texts_of(svg: str) -> list[Placed]:
     """Return the texts of a drawing."""
-    pattern = r'<text x="(\S+)" y="(\S+)" text-anchor="(\w+)" font-size="(\S+)"([^>]*)>(.*?)</text>'
+    pattern = r'<text x="(\S+)" y="(\S+)" text-anchor="(\w+)" font-size="(\S+)"[^>]*>(.*?)</text>'
     placed = []
-    for x, y, anchor, size, look, content in re.findall(pattern, svg):
+    for x, y, anchor, size, content in re.findall(pattern, svg):
         text = unescape(re.sub("<[^>]*>", "", content))
         width, height = text_width(text, float(size)), float(size)
         left = float(x) - (width / 2 if anchor == "middle" else 0)

@@ -112,9 +112,8 @@ class Paper:
     def write_labels(self) -> None:
         """Write each label where it covers no other one and the fewest lines."""
         boxes: list[tuple[complex, complex]] = []
-        ink = self.ink
         for label in self.labels:
-            tip, center = _place(label, boxes, ink, self.size)
+            tip, center = _place(label, boxes, self.ink, self.size)
             boxes.append((center, label.half))
             if abs(tip - label.at) > LEADER_FROM:
                 self.line(np.array([label.at, tip]), label.colour, 0.6)
