@@ -177,15 +177,21 @@ def test_estimates_courses_and_shares_are_those_of_each_row() -> None:
         assert out["VAX [mph]"][at] == pytest.approx(one.view.shown("VAX", expected), rel=1e-12)
 
 
+def test_shares_in_cells_are_written_as_numbers() -> None:
+    out, _, _ = solved(scene(2, MU=["50 %", ".5"]), "MUP MUC", as_text=False)
+    assert out["MU"].tolist() == [0.5 * abs(out["MUC"][0]), 0.5]
+
+
 def test_point_masses_leave_out_what_needs_the_plane() -> None:
     columns = {n: [SAMPLE[n]] for n in ("MA", "MB", "UX", "UY", "VX", "VY")} | {"M": ["4"]}
     out, bad, solver = solved(columns, "KI PN")
     assert list(out)[-1] == "KI"
     assert solver.remarks() == ["PN needs E MU GA"]
-    mixed = scene(2, M=["4", ""], DA=["", "7.59"])
-    out, bad, _ = solved(mixed, "VAX")
-    assert not bad
-    assert not np.isnan(out["VAX"]).any()
+    mixed = scene(2, M=["4", ""], DA=["1e999", "7.59"])
+    for arithmetic in ("float64", "applesoft"):
+        out, bad, _ = solved(mixed, "VAX", arithmetic=arithmetic)
+        assert not bad
+        assert not np.isnan(out["VAX"]).any()
 
 
 def test_remarks_count_rows() -> None:

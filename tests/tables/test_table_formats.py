@@ -118,6 +118,7 @@ def test_layouts_of_csv(tmp_path: Path, ending: str) -> None:
         (tmp_path / "in.csv").write_bytes(data)
         solved = solve_table(str(tmp_path / "in.csv"), str(target), ["VAX"])
         assert (solved.rows, solved.bad) == (3, 0)
+        assert float(read_rows(target)[0]["DA"]) == float(SAMPLES[0]["DA"])
         return [row["VAX"] for row in read_rows(target)]
 
     expected = results(plain.encode())
@@ -128,6 +129,8 @@ def test_layouts_of_csv(tmp_path: Path, ending: str) -> None:
         assert results(b"\xef\xbb\xbf" + text.replace("\n", ending).encode()) == expected
         assert results(text.replace("\n", ending).encode("utf-16")) == expected
     lines = plain.splitlines()
+    (tmp_path / "in.csv").write_text(lines[0])
+    assert solve_table(str(tmp_path / "in.csv"), str(target), arithmetic="applesoft").rows == 0
     gaps = [lines[0], "", lines[1], "," * 20, "", *lines[2:], "," * 20, ""]
     assert results(ending.join(gaps).encode()) == expected
     quoted = plain.replace(SAMPLES[0]["DA"], f'"{SAMPLES[0]["DA"]}"')

@@ -402,6 +402,7 @@ class _Rows:
             critical = evaluate(scene, ["MUC"])[0].get("MUC", np.nan)
             friction = self.columns.setdefault("MU", np.full(self.count, np.nan))
             friction[where] = self.shares[where] * np.abs(critical)
+            self.shown["MU"] = friction
 
     def solve(self) -> dict[str, NDArray[Any]]:
         """Return the results in double precision; rows whose numbers no impact has become bad."""
@@ -434,11 +435,14 @@ class _Rows:
     def _texts(self, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
         default = "1" if name in ("IA", "IB") else "0"
-        values = self.columns.get(name, np.full(self.count, np.nan)).tolist()
+        values = self.columns.get(name, np.full(self.count, np.nan))
+        is_open = ~np.isfinite(values)
+        is_ignored = is_open & (self.columns["M"] == 4)
+        is_ignored[[*self.bad]] = True
         texts = []
         for at, digits in enumerate(self._digits(name)):
-            text = digits or (default if math.isnan(values[at]) else to_text(values[at]))
-            if len(text) > MAX_TYPED or text == "INF":
+            text = digits or (default if is_ignored[at] else to_text(float(values[at])))
+            if len(text) > MAX_TYPED or (is_open[at] and not is_ignored[at]):
                 fault = f"= {quoted(text)} cannot be typed; expected at most {MAX_TYPED} digits"
                 self.bad.setdefault(at, (name, fault))
             texts.append(text)
