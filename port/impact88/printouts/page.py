@@ -138,11 +138,3 @@ def printed_rows(shown: Mapping[str, str]) -> list[int]:
     rows |= {ASTERISKS[0]} if "VAX" in shown else set()
     rows |= {ASTERISKS[1]} if "YBF" in shown else set()
     return sorted(rows)
-
-
-def page_text(chars: list[PrintedChar]) -> str:
-    """Return a page as text, a line for each row."""
-    lines: dict[int, str] = {}
-    for one in chars:
-        lines[one.row] = lines.get(one.row, "").ljust(one.column) + one.char
-    return "\n".join(lines.values())

@@ -36,12 +36,8 @@ from .search import FINAL_SPINS, find_scenes, scene_name, unseen_digits
 
 MACHINE_READ = 3
 """Misread characters of labels and numbers from which a page counts as read by a machine."""
-BADLY_READ = 17
-"""Such characters from which a digit for another proves nothing."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
-MAX_READER_SLIPS = 3
-"""Numbers of a page to which a reader adds a character, or from which it loses one."""
 MAX_FOREIGN_DIGITS = 6
 """Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
@@ -444,8 +440,8 @@ class Comparison:
         """Return the findings, with numbers that differ left open where they prove nothing.
 
         They do not where inputs were not read, where more of them differ than an alteration
-        explains while an input is in doubt, and, on a page that a machine read, unless each is one
-        digit for another in which the reader does not err elsewhere.
+        explains while an input is in doubt or a machine read the page, and on such a page unless
+        each is one digit for another in which the reader does not err elsewhere.
         """
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         if not numbers:
@@ -456,12 +452,10 @@ class Comparison:
         is_unsure = digits >= MAX_FOREIGN_DIGITS or any(map(self._is_doubtful, inputs))
         is_open = any(finding.name in INPUTS for finding in unread)
         is_open |= is_unsure and len(numbers) + len(unread) > MAX_ALTERED
-        if self.is_machine_read and not is_open:
-            if _is_readers_work(numbers, unread):
-                return [_attributed(finding) for finding in findings]
-            swaps = [_swap(finding) for finding in numbers]
-            is_sure = all(swaps) and len({*swaps}) == len(swaps) <= MAX_ALTERED
-            is_open = not is_sure or self.noise >= BADLY_READ or bool(unread)
+        if self.is_machine_read:
+            swaps = [swap for finding in [*numbers, *unread] if (swap := _swap(finding))]
+            is_sure = len({*swaps}) == len(swaps) and all(map(_swap, numbers))
+            is_open |= not is_sure or len(numbers) + len(unread) > MAX_ALTERED
         if not is_open:
             return [*findings]
         return [
@@ -487,30 +481,3 @@ def _swap(finding: Finding) -> str:
     pairs = [a + b for a, b in zip(finding.printed, read, strict=False) if a != b]
     is_swap = len(pairs) == 1 and len(finding.printed) == len(read) and pairs[0].isdigit()
     return pairs[0] if is_swap else ""
-
-
-def _is_readers_work(numbers: Sequence[Finding], unread: Sequence[Finding]) -> bool:
-    """Return True if a machine may have made all of these: each digit for another more than once,
-    and a character lost or added in a few."""
-    swaps = [swap for finding in [*numbers, *unread] if (swap := _swap(finding))]
-    others = [finding for finding in numbers if not _swap(finding)]
-    is_few = len(others) <= MAX_READER_SLIPS and all(map(_is_loss, others))
-    return is_few and all(swaps.count(swap) > 1 for swap in map(_swap, numbers) if swap)
-
-
-def _is_loss(finding: Finding) -> bool:
-    """Return True for a number from which characters, at most one a digit, are lost or added."""
-    short, long = sorted((finding.printed, finding.read), key=len)
-    digits = [sum(map(str.isdigit, text)) for text in (short, long)]
-    chars = iter(long)
-    return bool(short) and all(char in chars for char in short) and digits[1] - digits[0] <= 1
-
-
-def _attributed(finding: Finding) -> Finding:
-    """Return a number that differs as one that the reader misread: an input of other digits is not
-    read, anything else is in doubt."""
-    if finding.kind is not Kind.NUMBER:
-        return finding
-    printed, read = (re.sub("[^0-9]", "", text) for text in (finding.printed, finding.read))
-    is_slight = finding.name not in INPUTS or printed == read
-    return finding._replace(kind=Kind.DOUBT if is_slight else Kind.UNREAD)
