@@ -1,9 +1,9 @@
 """Alignment of glyphs with cells of the page by dynamic programming (Needleman and Wunsch, 1970).
 
-With s the cost of a glyph in a cell, a that of a glyph added after a cell, l that of a lost cell
-and r that of lost rows, the least cost of having read i glyphs and passed j cells is
+With s the cost of a glyph in a cell, a that of a glyph added after a cell and l that of a lost
+cell, the least cost of having read i glyphs and passed j cells is
 
-    D[i, j] = min(D[i-1, j-1] + s, D[i-1, j] + a, D[i, j-1] + l, D[i, start of an earlier row] + r)
+    D[i, j] = min(D[i-1, j-1] + s, D[i-1, j] + a, D[i, j-1] + l)
 
 The costs are those of `costs`.
 """
@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .costs import ALIKE, FOREIGN, LOST, LOST_ROW, WRONG
+from .costs import ALIKE, FOREIGN, LOST, WRONG
 from .glyphs import LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
 from .page import Cell
@@ -65,14 +65,8 @@ class Aligner:
 
     def __init__(self, cells: Sequence[Cell]) -> None:
         self.cells = cells
-        starts = [j for j, cell in enumerate(cells) if cell.kind == "between"]
-        self.starts = np.array(starts, np.int64)
         self.lost = [0 if cell.kind == "between" else round(SCALE * LOST) for cell in cells]
         self.lost_sums = np.cumsum([0, *self.lost])
-        ends = [*starts[1:], len(cells)][: len(starts)]
-        rows = [sum(self.lost[start:end]) for start, end in zip(starts, ends, strict=True)]
-        row_costs = [min(cost, round(SCALE * LOST_ROW)) for cost in rows]
-        self.row_sums = np.cumsum([0, *row_costs])[: len(starts)]
         self.own_gaps = np.array([self._own_gap(j) for j in range(len(cells))], np.int64)
         self.added_gaps = np.array([self._added_gap(j) for j in range(-1, len(cells))], np.int64)
         self._costs: dict[str, tuple[Costs, Costs]] = {}
@@ -112,10 +106,7 @@ class Aligner:
         return self._costs[char]
 
     def _pass_cells(self, row: Costs) -> Costs:
-        """Return the costs of a row of the table with cells and rows lost."""
-        row = np.minimum.accumulate(row - self.lost_sums) + self.lost_sums
-        at_rows = np.minimum.accumulate(row[self.starts] - self.row_sums) + self.row_sums
-        row[self.starts] = at_rows
+        """Return the costs of a row of the table with cells lost."""
         costs: Costs = np.minimum.accumulate(row - self.lost_sums) + self.lost_sums
         return costs
 
@@ -161,17 +152,6 @@ class Aligner:
                     i -= 1
                     pairs.append((i, None))
                     continue
-            if j and table[i, j - 1] + self.lost[j - 1] == table[i, j]:
-                j -= 1
-                pairs.append((None, j))
-                continue
-            start = self._row_before(table[i], j)
-            pairs += [(None, k) for k in range(j - 1, start - 1, -1)]
-            j = start
+            j -= 1
+            pairs.append((None, j))
         return pairs[::-1]
-
-    def _row_before(self, costs: Costs, j: int) -> int:
-        """Return the start of the row from which lost rows lead to a cell."""
-        row = int(np.searchsorted(self.starts, j))
-        steps = self.row_sums[row] - self.row_sums[:row]
-        return int(self.starts[:row][costs[self.starts[:row]] + steps == costs[j]][0])

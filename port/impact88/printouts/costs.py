@@ -14,8 +14,6 @@ LOST = 0.6
 """A printed character, or a result, that is not in the text."""
 FOREIGN = 0.5
 """A character, or a blank within a word or number, that the program does not print there."""
-LOST_ROW = 2.0
-"""A whole row that is not in the text: less than its characters."""
 BACKWARD = 1.0
 """A label further up the page than the one before it."""
 PASSED = 0.03

@@ -34,6 +34,8 @@ from .programs import Listing
 from .reader import TWINS, Reading, Slot, read_printouts
 from .search import FINAL_SPINS, find_scenes, scene_name, unseen_digits
 
+# Fifteen numbers decide a verdict: the three below; `reader.MIN_NUMBERS` and `reader.PAGE_STEP`;
+# the nine costs of `costs`; and the half of what differs that a slip must explain (`search`).
 MACHINE_READ = 3
 """Misread characters of labels and numbers from which a page counts as read by a machine."""
 MAX_ALTERED = 2
