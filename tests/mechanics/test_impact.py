@@ -317,3 +317,12 @@ def test_the_switch_of_the_environment(switch):
     )
     expected = None if switch == "0" else impact88.accelerated
     assert run.stdout.startswith(f"{expected} "), run.stderr
+
+
+def test_the_direction_of_the_force_on_a_point_mass_is_measured_from_its_heading():
+    scene = {"M": 4, "MA": 1, "MB": 1, "UX": 1, "UY": 0, "VX": 0, "VY": 0, "GA": 0, "E": 0}
+    scene |= {"MU": 0, "WA": 0, "WB": 0, "TB": 90}
+    values, missing = evaluate(scene, ["PDOFA", "PDOFB"])
+    assert not missing
+    assert np.isnan(values["PDOFA"])  # TA is not given
+    assert values["PDOFB"] == -90  # pushed along +x, B faces +y: from its left

@@ -20,7 +20,9 @@ Floats = NDArray[np.float64]
 BODIES = 6.0  # M of bodies
 POINT = 4.0  # M of point masses
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
-"""Columns that a point mass does not use."""
+"""Columns that the impact of a point mass does not use."""
+HEADINGS = ("TA", "TB")
+"""Columns of these that the direction of the force is measured from: NaN if not given."""
 _ALL = tuple(RESULTS)
 _NAMES = frozenset(QUANTITIES)
 _UNUSED = dict.fromkeys(("MA", "MB", "IA", "IB"), 1.0)
@@ -379,7 +381,8 @@ def _complete(given: dict[str, Any]) -> None:
     """Add M where it is not given, and 0 for what point masses do not use."""
     m = given.setdefault("M", BODIES)
     if m is not BODIES and (m == POINT if type(m) is float else m.size and (m == POINT).all()):
-        given.update(dict.fromkeys(UNUSED_BY_POINTS, 0.0))
+        headings = {name: given.get(name, math.nan) for name in HEADINGS}
+        given.update(dict.fromkeys(UNUSED_BY_POINTS, 0.0) | headings)
 
 
 def _frame_names(frame: Any) -> frozenset[object]:
