@@ -122,6 +122,12 @@ def test_what_cannot_be_typed_is_a_bad_row() -> None:
     for name, cell in (("UX", "0." + "1" * 80), ("MA", "inf")):
         columns = {**scene(1), name: [cell]}
         assert "cannot be typed" in solved(columns, "KI", arithmetic="applesoft")[1][0].reason
+    points = {**scene(1, MA=["inf"], UX=["0"]), "M": ["4"]}
+    assert "cannot be typed" in solved(points, "KI", arithmetic="applesoft")[1][0].reason
+    mixed = scene(2, M=["4", "6"])
+    del mixed["EM"]  # a row of 6 equations needs it
+    for arithmetic in ("float64", "applesoft"):
+        assert [row.row for row in solved(mixed, "KI VAX", arithmetic=arithmetic)[1]] == [2]
 
 
 def test_applesoft_has_the_bits_of_replay_and_reports_errors() -> None:

@@ -442,8 +442,9 @@ class _Rows:
         texts = []
         for at, digits in enumerate(self._digits(name)):
             text = digits or (default if is_ignored[at] else to_text(float(values[at])))
-            if len(text) > MAX_TYPED or (is_open[at] and not is_ignored[at]):
-                fault = f"= {quoted(text)} cannot be typed; expected at most {MAX_TYPED} digits"
+            is_missing = is_open[at] and not is_ignored[at]
+            if is_missing or len(text) > MAX_TYPED or text == "INF":
+                fault = f"= {quoted(text)} cannot be typed; expected up to {MAX_TYPED} digits"
                 self.bad.setdefault(at, (name, fault))
             texts.append(text)
         return texts
