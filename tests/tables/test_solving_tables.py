@@ -2,6 +2,7 @@
 
 import csv
 import math
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -124,10 +125,10 @@ def test_what_cannot_be_typed_is_a_bad_row() -> None:
         assert "cannot be typed" in solved(columns, "KI", arithmetic="applesoft")[1][0].reason
     points = {**scene(1, MA=["inf"], UX=["0"]), "M": ["4"]}
     assert "cannot be typed" in solved(points, "KI", arithmetic="applesoft")[1][0].reason
-    mixed = scene(2, M=["4", "6"])
-    del mixed["EM"]  # a row of 6 equations needs it
-    for arithmetic in ("float64", "applesoft"):
-        assert [row.row for row in solved(mixed, "KI VAX", arithmetic=arithmetic)[1]] == [2]
+    for name, arithmetic in product(("EM", "E", "WA"), ("float64", "applesoft")):
+        mixed = scene(2, M=["4", "6"])
+        del mixed[name]  # a row of 6 equations needs it
+        assert [row.row for row in solved(mixed, "KI XAF", arithmetic=arithmetic)[1]] == [2]
 
 
 def test_applesoft_has_the_bits_of_replay_and_reports_errors() -> None:

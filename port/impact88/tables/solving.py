@@ -227,15 +227,14 @@ class Solver:
         self._leave_out_results({*computed, *self.constants, *case.estimated, "M"})
 
     def _leave_out_results(self, present: set[str]) -> None:
-        """Leave out results of point masses whose inputs are missing, and fill those that no other
-        result uses. Raises UserError where the table lacks another column."""
+        """Leave out results of point masses whose inputs are missing. Raises UserError where the
+        table lacks another column."""
         self.may_be_points = "M" in self.columns or self.constants.get("M") == 4
         optional = OPTIONAL_OF_POINTS if self.may_be_points else ()
         lacking = [n for n in SCENE if n not in present]
         if absent := [n for n in lacking if n not in optional]:
             message = f"no column {' '.join(absent)}; --set NAME=VALUE gives one for all rows"
             raise UserError(message, self.table.where)
-        self.constants |= dict.fromkeys([n for n in lacking if n not in UNUSED_BY_POINTS], 0.0)
         scene = dict.fromkeys(present, 1.0) | {"WA": 0.0, "WB": 0.0, "M": 4.0}
         is_complete = self.is_applesoft or not lacking
         self.left_out = {} if is_complete else evaluate(scene, self.results)[1]
@@ -311,10 +310,10 @@ class _Rows:
         for name in sorted(solver.columns, key="M".__ne__):  # M decides which others are used
             self._read(name)
         if solver.may_be_points:
-            blank = np.where(self.columns["M"] == 4, 0.0, np.nan)
-            used = {*solver.followed, *solver.estimated}
-            absent = [n for n in UNUSED_BY_POINTS if n not in self.columns and n not in used]
-            self.columns |= dict.fromkeys(absent, blank)
+            is_point, ones = self.columns["M"] == 4, ("IA", "IB")  # line 480 divides by these
+            used = {*self.columns, *solver.followed, *solver.estimated}
+            for name in {*OPTIONAL_OF_POINTS} - used:
+                self.columns[name] = np.where(is_point, float(name in ones), np.nan)
         for name in solver.estimated:
             self._estimate(name)
         for name in solver.followed:
