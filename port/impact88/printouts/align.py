@@ -139,19 +139,15 @@ class Aligner:
         """Return the way back through the table."""
         pairs: list[Pair] = []
         i, j = len(glyphs), len(self.cells)
-        while i or j:
-            if i:
-                own, added = self._costs_of(glyphs[i - 1].char)
-                gap = glyphs[i - 1].gap
-                before = table[i - 1, j - 1] + own[j - 1] + self.own_gaps[j - 1, gap] if j else -1
-                if before == table[i, j]:
-                    i, j = i - 1, j - 1
-                    pairs.append((i, j))
-                    continue
-                if table[i - 1, j] + added[j] + self.added_gaps[j, gap] == table[i, j]:
-                    i -= 1
-                    pairs.append((i, None))
-                    continue
-            j -= 1
-            pairs.append((None, j))
+        while i or j:  # of ways of equal cost the one with the first cells
+            if j and table[i, j - 1] + self.lost[j - 1] == table[i, j]:
+                j -= 1
+                pairs.append((None, j))
+                continue
+            i -= 1
+            own, _ = self._costs_of(glyphs[i].char)
+            step = own[j - 1] + self.own_gaps[j - 1, glyphs[i].gap]
+            is_own = bool(j) and table[i, j - 1] + step == table[i + 1, j]
+            j -= is_own
+            pairs.append((i, j if is_own else None))
         return pairs[::-1]
