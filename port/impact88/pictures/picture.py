@@ -1,0 +1,250 @@
+"""A file's pages as ink: 0 for paper, about 1 for type, upright as the file says."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import PIL.Image
+from numpy.typing import NDArray
+from PIL import ImageOps
+from scipy import ndimage
+
+from ..errors import UserError
+from .pdfpages import MAX_PAGES, render_pages
+
+Floats = NDArray[np.float64]
+Image = NDArray[np.float32]
+
+MAX_PIXELS = 60_000_000  # of a page in its file: A3 at 500 dots an inch has 48 million
+MAX_SIDE = 4000  # pixels of a page as it is read: 20 for each of 200 columns
+MIN_SIDE = 100  # pixels of the shorter side: 13 lines of type have more
+BLOCK = 4  # pixels a side that are averaged to find the paper
+TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
+GRAIN = 0.08  # darkness that is never ink
+SURROUND = 0.8  # brightness of what surrounds a page, relative to the page, at most
+MIN_PAGE = 0.15  # fraction of the picture that a page with a surround takes, at least
+
+
+class Page(NamedTuple):
+    """A page of a file.
+
+    Parameters
+    ----------
+    number : int
+        Its number in the file, from 1.
+    grey : ndarray of float32, shape (rows, columns)
+        The picture, 0 (black) to 255.
+    scale : float
+        Pixels of the file per pixel of the picture.
+    text : str
+        The text layer of a PDF, "" for other files.
+    """
+
+    number: int
+    grey: Image
+    scale: float = 1.0
+    text: str = ""
+
+
+def read_pages(data: bytes, name: str, pages: range | None = None) -> Iterator[Page]:
+    """Yield the pages of a picture or PDF.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    name : str
+        Its name, for messages.
+    pages : range, optional
+        The numbers of the pages that are read, from 1; all by default.
+
+    Yields
+    ------
+    Page
+
+    Raises
+    ------
+    UserError
+        If the file is damaged, too large, or of another kind.
+    """
+    if data.startswith(b"%PDF-"):
+        yield from _pdf_pages(data, name, pages)
+        return
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of large pictures, which are refused below
+            yield from _picture_pages(data, name, pages)
+    except UserError:
+        raise
+    except Exception as error:  # of a decoder, of any kind, on a damaged file
+        reason = str(error).split("\n")[0]
+        if not reason or "<_io." in reason:  # Pillow names its stream
+            reason = "unknown format, or damaged"
+        raise UserError(f"is not a picture that can be read: {reason}", name) from None
+
+
+def _picture_pages(data: bytes, name: str, pages: range | None) -> Iterator[Page]:
+    with PIL.Image.open(io.BytesIO(data)) as file:
+        _check_size(file, name, 1)
+        count = int(getattr(file, "n_frames", 1))
+        if count > MAX_PAGES:
+            raise UserError(f"has {count:,} pages; expected at most {MAX_PAGES}", name)
+        for number in pages or range(1, count + 1):
+            if not 1 <= number <= count:
+                raise UserError(f"page {number}: the file has {count}", name)
+            file.seek(number - 1)
+            _check_size(file, name, number)
+            longer = max(file.size)
+            if count == 1:  # a JPEG is made smaller while it is decoded
+                file.draft("L", (MAX_SIDE, MAX_SIDE))
+            grey = _grey(file)
+            yield Page(number, grey, longer / max(grey.shape))
+
+
+def _check_size(file: PIL.Image.Image, name: str, number: int) -> None:
+    """Raise UserError for a picture that is larger or smaller than any page."""
+    size = f"page {number}: {file.width} x {file.height} pixels"
+    if file.width * file.height > MAX_PIXELS:
+        raise UserError(f"{size}; expected at most {MAX_PIXELS:,}", name)
+    if min(file.size) < MIN_SIDE:
+        raise UserError(f"{size}; expected at least {MIN_SIDE} a side", name)
+
+
+def _grey(file: PIL.Image.Image) -> Image:
+    """Return a picture in grey, turned as its file says, no longer than `MAX_SIDE`."""
+    picture = ImageOps.exif_transpose(file)
+    if picture.mode.startswith(("I", "F")):  # 16 bits and more
+        values = np.nan_to_num(np.asarray(picture, np.float32))
+        values *= 255 / max(float(values.max()), 1.0)
+        picture = PIL.Image.fromarray(np.clip(values, 0, 255).astype(np.uint8))
+    elif picture.mode in ("RGBA", "LA", "P", "PA"):  # what is transparent is paper
+        picture = picture.convert("RGBA")
+        paper = PIL.Image.new("RGBA", picture.size, "white")
+        picture = PIL.Image.alpha_composite(paper, picture)
+    picture = picture.convert("L")
+    if max(picture.size) > MAX_SIDE:
+        picture.thumbnail((MAX_SIDE, MAX_SIDE), PIL.Image.Resampling.BOX)
+    return np.asarray(picture, np.float32)
+
+
+def _pdf_pages(data: bytes, name: str, pages: range | None) -> Iterator[Page]:
+    for number, rendered in enumerate(render_pages(data, name, MAX_SIDE), 1):
+        if pages is None or number in pages:
+            pixels = np.frombuffer(rendered.pixels, np.uint8)
+            grey = pixels.reshape(rendered.height, rendered.width).astype(np.float32)
+            yield Page(number, grey, 1.0, rendered.text)
+
+
+def resize(picture: Image, scale: float) -> Image:
+    """Return a picture enlarged or reduced by a factor."""
+    width, height = (max(1, round(length * scale)) for length in picture.shape[::-1])
+    small = PIL.Image.fromarray(picture).resize((width, height), PIL.Image.Resampling.BILINEAR)
+    return np.asarray(small, np.float32)
+
+
+def ink_of(grey: Image) -> Image:
+    """Return the ink of a page: how much darker it is than the paper around, 1 for full ink.
+
+    Parameters
+    ----------
+    grey : ndarray of float32, shape (rows, columns)
+        The page, 0 (black) to 255; a negative is inverted.
+
+    Returns
+    -------
+    ndarray of float32, shape (rows, columns)
+        0 for paper and for what surrounds the page, at most 1.5.
+
+    Notes
+    -----
+    The paper is the picture closed over dark parts (the black-hat transform). Full ink is the mean
+    darkness above the threshold between grain and ink (Otsu 1979).
+    """
+    small = resize(grey, 1 / BLOCK)
+    size = max(5, round(max(small.shape) / TYPE_SIZE))
+    if _is_negative(small, size):
+        grey, small = 255 - grey, 255 - small
+    paper = ndimage.grey_closing(small, (size, size), mode="nearest")
+    paper = ndimage.gaussian_filter(paper, size / 3, mode="nearest")
+    is_page = _page_mask(paper)
+    paper = np.where(is_page, paper, np.inf).astype(np.float32)
+    rows = np.minimum(np.arange(grey.shape[0]) // BLOCK, paper.shape[0] - 1)
+    columns = np.minimum(np.arange(grey.shape[1]) // BLOCK, paper.shape[1] - 1)
+    around = paper[rows[:, None], columns]
+    ink = np.clip(1 - grey / np.maximum(around, 1), 0, 1)
+    ink[np.isinf(around)] = 0
+    sample = ink[::3, ::3]
+    sample = sample[sample > GRAIN]
+    if sample.size < 50:
+        return np.asarray(ink, np.float32)
+    full = float(sample[sample >= _threshold(sample)].mean())
+    return np.asarray(np.clip(ink / max(full, 0.1), 0, 1.5), np.float32)
+
+
+def _is_negative(small: Image, size: int) -> bool:
+    """Return True for a picture whose strokes are lighter than what surrounds them."""
+    if np.median(small) > 110:
+        return False
+    dark = ndimage.grey_closing(small, (size, size)) - small
+    light = small - ndimage.grey_opening(small, (size, size))
+    return bool((light > 40).sum() > (dark > 40).sum())
+
+
+def _page_mask(paper: Image) -> NDArray[np.bool_]:
+    """Return where the page is, on paper that lies on something darker; all True without that."""
+    bright = float(np.percentile(paper, 90))
+    labels, count = ndimage.label(paper > SURROUND * bright)
+    whole = np.ones(paper.shape, bool)
+    if not count:
+        return whole
+    sizes = np.bincount(labels.ravel())[1:]
+    page = ndimage.binary_fill_holes(labels == 1 + int(sizes.argmax()))
+    edge = np.r_[page[0], page[-1], page[:, 0], page[:, -1]]
+    if edge.mean() > 0.5 or page.mean() < MIN_PAGE:
+        return whole
+    return np.asarray(ndimage.binary_erosion(page, iterations=max(2, max(paper.shape) // 150)))
+
+
+def _threshold(values: Image) -> float:
+    """Return the level with the largest variance between what is below and above."""
+    counts, edges = np.histogram(values, 64)
+    below = np.cumsum(counts)
+    total = np.cumsum(counts * (edges[:-1] + edges[1:]) / 2)
+    with np.errstate(all="ignore"):
+        between = (total / below - total[-1] / below[-1]) ** 2 * below / (below[-1] - below)
+    return float(edges[int(np.argmax(np.nan_to_num(between[:-1]))) + 1])
+
+
+class Points(NamedTuple):
+    """Inked places of a page, x to the right and y down, in pixels from its middle."""
+
+    x: Floats
+    y: Floats
+    span: float
+
+    def some(self, count: int) -> Points:
+        """Return about ``count`` of the places."""
+        part = slice(None, None, max(1, len(self.x) // count))
+        return Points(self.x[part], self.y[part], self.span)
+
+    def inside(self, chosen: NDArray[np.bool_]) -> Points:
+        """Return the chosen places."""
+        return Points(self.x[chosen], self.y[chosen], self.span)
+
+
+def points_of(ink: Image) -> Points:
+    """Return the inked places of a page without single specks, 150,000 at most."""
+    around = ndimage.uniform_filter(ink, 3)
+    y, x = np.nonzero((ink > 0.4) & (around > 0.2))
+    # a fixed stride would fall into step with the rows, whole pixels with the pitch
+    random = np.random.default_rng(1988)
+    if len(x) > 150_000:
+        chosen = random.choice(len(x), 150_000, replace=False)
+        y, x = y[chosen], x[chosen]
+    across, down = np.array([x, y]) + random.random((2, len(x)))
+    height, width = ink.shape
+    return Points(across - width / 2, down - height / 2, float(max(ink.shape)))
