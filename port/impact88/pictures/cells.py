@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from importlib import resources
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -213,24 +214,22 @@ def unlikeness(cells: Cells) -> Floats:
     rows = _scaled_rows(cells)
     flat = glyphs.reshape(len(glyphs), glyphs.shape[1], -1)
     flat = flat / np.linalg.norm(flat, axis=2, keepdims=True)
-    sample = rows[:: max(1, len(rows) // 100)]
-    fits = np.array([_apart(sample, style).min(axis=1).sum() for style in flat])
-    chosen = np.argsort(fits)[:STYLES]
-    return np.min([_apart(rows, style) for style in flat[chosen]], axis=0)
+    sample = rows[:: max(1, len(rows) // 40)]
+    fits = _apart(sample, flat).min(axis=2).sum(axis=0)
+    return _apart(rows, flat[np.argsort(fits)[:STYLES]]).min(axis=1).astype(float)
 
 
-def _apart(rows: Vectors, style: Vectors) -> Floats:
-    """Return 1 - cos φ of each cell and each glyph of a style, at the best shift."""
-    reach = 2
+def _apart(rows: Vectors, styles: Vectors) -> Vectors:
+    """Return 1 - cos φ of each cell, style and glyph at the best shift."""
     tall, width = sum(CAPITALS), CELL_WIDTH
-    padded = np.pad(rows, ((0, 0), (reach, reach), (reach, reach)))
-    best = np.full((len(rows), len(style)), -1.0)
-    for y in range(2 * reach + 1):
-        for x in range(2 * reach + 1):
-            shifted = padded[:, y : y + tall, x : x + width].reshape(len(rows), -1)
-            norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
-            best = np.maximum(best, shifted @ style.T / norm)
-    return 1 - best
+    glyphs = styles.reshape(-1, tall * width).T
+    padded = np.pad(rows, ((0, 0), (2, 2), (1, 1)))
+    best = np.full((len(rows), glyphs.shape[1]), -1, np.float32)
+    for y, x in product(range(5), range(3)):
+        shifted = padded[:, y : y + tall, x : x + width].reshape(len(rows), -1)
+        norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
+        np.maximum(best, shifted @ glyphs / norm, out=best)
+    return 1 - best.reshape(len(rows), len(styles), -1)
 
 
 def _scaled_rows(cells: Cells) -> Vectors:

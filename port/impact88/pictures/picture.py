@@ -26,6 +26,7 @@ BLOCK = 4  # pixels a side that are averaged to find the paper
 TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
 GRAIN = 0.08  # darkness that is never ink
 SURROUND = 0.8  # brightness of what surrounds a page, relative to the page, at most
+MIN_STEP = 0.08  # logarithm of brightness across the edge of a page; the hardest shadow has 0.04
 MIN_PAGE = 0.15  # fraction of the picture that a page with a surround takes, at least
 
 
@@ -169,8 +170,8 @@ def ink_of(grey: Image) -> Image:
     if _is_negative(small, size):
         grey, small = 255 - grey, 255 - small
     paper = ndimage.grey_closing(small, (size, size), mode="nearest")
-    paper = ndimage.gaussian_filter(paper, size / 3, mode="nearest")
     is_page = _page_mask(paper)
+    paper = ndimage.gaussian_filter(paper, size / 3, mode="nearest")
     paper = np.where(is_page, paper, np.inf).astype(np.float32)
     rows = np.minimum(np.arange(grey.shape[0]) // BLOCK, paper.shape[0] - 1)
     columns = np.minimum(np.arange(grey.shape[1]) // BLOCK, paper.shape[1] - 1)
@@ -195,18 +196,25 @@ def _is_negative(small: Image, size: int) -> bool:
 
 
 def _page_mask(paper: Image) -> NDArray[np.bool_]:
-    """Return where the page is, on paper that lies on something darker; all True without that."""
-    bright = float(np.percentile(paper, 90))
-    labels, count = ndimage.label(paper > SURROUND * bright)
+    """Return where the page is, on paper that lies on something darker; all True without that.
+
+    The edge of a page is a step of brightness; that of a shadow is not.
+    """
     whole = np.ones(paper.shape, bool)
-    if not count:
+    labels, _ = ndimage.label(paper > SURROUND * np.percentile(paper, 90))
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    page = ndimage.binary_fill_holes(labels == sizes.argmax())
+    border = np.r_[page[0], page[-1], page[:, 0], page[:, -1]]
+    if border.mean() > 0.5 or page.mean() < MIN_PAGE:
         return whole
-    sizes = np.bincount(labels.ravel())[1:]
-    page = ndimage.binary_fill_holes(labels == 1 + int(sizes.argmax()))
-    edge = np.r_[page[0], page[-1], page[:, 0], page[:, -1]]
-    if edge.mean() > 0.5 or page.mean() < MIN_PAGE:
+    inner, outer = ndimage.binary_erosion(page), ndimage.binary_dilation(page)
+    light = np.log(np.maximum(paper, 1))
+    steps = ndimage.maximum_filter(light, 3) - ndimage.minimum_filter(light, 3)
+    if np.median(steps[outer & ~inner]) < MIN_STEP:
         return whole
-    return np.asarray(ndimage.binary_erosion(page, iterations=max(2, max(paper.shape) // 150)))
+    margin = max(2, max(paper.shape) // 150)
+    return np.asarray(ndimage.binary_erosion(page, iterations=margin))
 
 
 def _threshold(values: Image) -> float:

@@ -1,0 +1,47 @@
+"""Ink that the transcript does not explain: marks of a pen, stamps, large specks."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from .grid import CELL_WIDTH, Grid
+from .picture import Floats
+
+DARK = 0.45  # ink from which a place belongs to a mark
+MIN_AREA = 0.12  # of a mark, in squares of a cell's width: a full stop has as much
+
+
+def marks_of(grid: Grid, text: str) -> list[Floats]:
+    """Return the marks outside the cells that a transcript fills.
+
+    Parameters
+    ----------
+    grid : Grid
+        The page.
+    text : str
+        Its transcript, a character for each cell.
+
+    Returns
+    -------
+    list of ndarray, shape (4, 2)
+        Corners of each mark on the page, pixels, clockwise.
+    """
+    is_free = np.ones(grid.ink.shape, bool)
+    for line, row in enumerate(text.split("\n")):
+        for cell in range(len(row)):
+            if row[cell] != " ":
+                corners = grid.corners(line, cell) * grid.scale
+                left, top = np.maximum(corners.min(axis=0) - [4, 5], 0).astype(int)
+                right, foot = np.ceil(corners.max(axis=0) + [4, 5]).astype(int)
+                is_free[top:foot, left:right] = False
+    dark = (grid.ink > DARK) & is_free
+    labels, _ = ndimage.label(ndimage.binary_closing(dark, np.ones((3, 3))))
+    areas = np.bincount(labels[dark], minlength=labels.max() + 1)
+    marks = []
+    for number, box in enumerate(ndimage.find_objects(labels), 1):
+        if areas[number] > MIN_AREA * CELL_WIDTH**2:
+            top, foot = box[0].start / grid.scale, box[0].stop / grid.scale
+            left, right = box[1].start / grid.scale, box[1].stop / grid.scale
+            marks.append(np.array([[left, top], [right, top], [right, foot], [left, foot]]))
+    return marks

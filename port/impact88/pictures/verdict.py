@@ -1,0 +1,249 @@
+"""The verdict on a page: that of its transcript as a text, gated by cells and marks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy import ndimage
+
+from ..errors import UserError
+from ..printouts import VERDICTS, Finding, Kind, Verdict, Verification, judge
+from ..printouts.page import REPLIES
+from .grid import STEEP, grids_of, is_on_side, skew_of
+from .picture import Floats, Image, Page, ink_of, points_of, read_pages
+from .residue import marks_of
+from .transcript import Cell, Transcript, transcribe
+
+MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
+MAX_DOUBTFUL = 12  # cells of numbers in doubt, beyond which nothing follows from the others
+MIN_ROW_GAIN = 60.0  # gain of the program's rows from which a page is upright
+"""A page with results only has 150, one upside down 20."""
+PROMPT = re.compile(r"(?m)^( *ENTER.*?:.*?\?).*$")
+
+
+@dataclass(frozen=True)
+class PictureVerification:
+    """A printout of a picture with its verdict.
+
+    Parameters
+    ----------
+    page : int
+        Number of the page in the file.
+    verification : Verification
+        The transcript's verification, with the verdict on the picture.
+    boxes : tuple of ndarray, shape (4, 2)
+        The place of each finding in the file's picture as it lies, pixels, clockwise.
+    doubts : tuple of (Cell, ndarray)
+        Cells in doubt, or that differ, with their places.
+    marks : tuple of ndarray
+        Places of ink that nothing explains.
+    remarks : tuple of str
+        Remarks on the page.
+    grey : ndarray
+        The page.
+    scale : float
+        Pixels of the file per pixel of ``grey``.
+    """
+
+    page: int
+    verification: Verification
+    boxes: tuple[Floats, ...] = ()
+    doubts: tuple[tuple[Cell, Floats], ...] = ()
+    marks: tuple[Floats, ...] = ()
+    remarks: tuple[str, ...] = ()
+    grey: Image = field(default_factory=lambda: np.zeros((1, 1), np.float32), repr=False)
+    scale: float = 1.0
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict on the picture."""
+        return self.verification.verdict
+
+
+def verify_picture(
+    source: bytes | str,
+    name: str = "picture",
+    pages: range | None = None,
+    scene: Mapping[str, str] | None = None,
+) -> list[PictureVerification]:
+    """Verify the printouts in a picture or PDF.
+
+    Parameters
+    ----------
+    source : bytes or str
+        The file, or its path.
+    name : str
+        The file's name, for messages.
+    pages : range, optional
+        Numbers of the pages that are read, from 1; all by default.
+    scene : mapping of str to str, optional
+        Inputs known from elsewhere, for a page with results only.
+
+    Returns
+    -------
+    list of PictureVerification
+        One for each printout.
+
+    Raises
+    ------
+    UserError
+        If the file cannot be read, or no printout is found.
+    """
+    if isinstance(source, str):
+        with open(source, "rb") as file:
+            data = file.read()
+        name = source
+    else:
+        data = source
+    results: list[PictureVerification] = []
+    for page in read_pages(data, name, pages):
+        results += verify_page(page, scene)
+    if not results:
+        raise UserError(
+            "no printout was found; expected lines of fixed pitch, 10 pixels a character", name
+        )
+    return results
+
+
+def verify_page(
+    page: Page, scene: Mapping[str, str] | None = None
+) -> Iterator[PictureVerification]:
+    """Yield the verification of each printout on a page."""
+    for transcript, turned in _transcripts(page, scene):
+        marks = marks_of(transcript.grid, transcript.text)
+        for verification in _judged(transcript, marks, scene):
+            yield _located(page, transcript, turned, verification, marks)
+
+
+@dataclass(frozen=True)
+class _Turn:
+    """How a page was set upright: quarter turns to the left, then the slope of its lines."""
+
+    quarters: int
+    slope: float
+    size: tuple[int, int]  # height and width as it lies
+
+    def apply(self, ink: Image) -> Image:
+        """Return a page set upright."""
+        turned = np.ascontiguousarray(np.rot90(ink, self.quarters))
+        if not self.slope:
+            return turned
+        angle = float(np.degrees(np.arctan(self.slope)))
+        return np.asarray(ndimage.rotate(turned, angle, reshape=False, order=1), np.float32)
+
+    def back(self, points: Floats) -> Floats:
+        """Return where points of the upright page are on the page as it lies."""
+        height, width = self.size if self.quarters % 2 == 0 else self.size[::-1]
+        x, y = points[:, 0] - width / 2, points[:, 1] - height / 2
+        angle = np.arctan(self.slope)
+        x, y = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
+        x, y = ((x, y), (-y, x), (-x, -y), (y, -x))[self.quarters]
+        return np.stack([x + self.size[1] / 2, y + self.size[0] / 2], axis=1)
+
+
+def _transcripts(
+    page: Page, scene: Mapping[str, str] | None
+) -> list[tuple[Transcript, _Turn]]:
+    """Return the transcripts of a page in the quarter turn in which the program's rows fit."""
+    ink = ink_of(page.grey)
+    points = points_of(ink)
+    if len(points.x) < 500:
+        return []
+    best: list[tuple[Transcript, _Turn]] = []
+    first = 1 if is_on_side(points) else 0
+    for quarters in (first, first + 2):
+        turn = _Turn(quarters, 0.0, (ink.shape[0], ink.shape[1]))
+        upright = turn.apply(ink)
+        slope = skew_of(points_of(upright))
+        if abs(slope) > STEEP:
+            turn = replace(turn, slope=slope)
+            upright = turn.apply(ink)
+        found = [(transcribe(g, scene), turn) for g in grids_of(upright, points_of(upright))]
+        gain = sum(transcript.gain for transcript, _ in found)
+        if gain > sum(transcript.gain for transcript, _ in best):
+            best = found
+        if gain > MIN_ROW_GAIN:
+            break
+    return best
+
+
+def _judged(
+    transcript: Transcript, marks: Sequence[Floats], scene: Mapping[str, str] | None
+) -> Iterator[Verification]:
+    """Yield the printouts of a transcript with the verdict on the picture."""
+    results = judge(transcript.text, scene)
+    if any(_is_reply_alone(result) for result in results):
+        # a reply was typed by a person: it is not held against a page
+        results = judge(PROMPT.sub(_blanked, transcript.text), scene)
+    for result in results:
+        yield replace(result, verdict=_gated(result, transcript, marks))
+
+
+def _is_reply_alone(result: Verification) -> bool:
+    adverse = [f for f in result.findings if VERDICTS[f.kind] is not Verdict.AS_READ]
+    return bool(adverse) and any(finding.name in REPLIES for finding in adverse)
+
+
+def _blanked(match: re.Match[str]) -> str:
+    return str(match[1]).ljust(len(match[0]))
+
+
+def _gated(
+    result: Verification, transcript: Transcript, marks: Sequence[Floats]
+) -> Verdict:
+    """Return the verdict on a picture: that of its text, held back by cells and marks."""
+    first, last = (transcript.line_cell(offset)[0] for offset in result.span)
+    cells = [cell for cell in transcript.cells if first <= cell.line <= last]
+    doubts = [cell for cell in cells if cell.state == "doubt"]
+    in_numbers = sum(cell.name != "" for cell in doubts)
+    differing = [cell for cell in cells if cell.state == "differs"]
+    verdict = result.verdict
+    if not cells or in_numbers > MAX_DOUBTFUL:
+        return Verdict.INCOMPLETE
+    if verdict is Verdict.DIFFERS:
+        is_few = len(differing) <= MAX_DIFFERING or (result.explanation and in_numbers < 3)
+        return verdict if is_few else Verdict.INCOMPLETE
+    if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
+        if in_numbers or any(cell.name for cell in differing):
+            return Verdict.INCOMPLETE
+        if doubts or differing or marks:
+            return Verdict.AS_READ
+    return verdict
+
+
+def _located(
+    page: Page,
+    transcript: Transcript,
+    turn: _Turn,
+    verification: Verification,
+    marks: Sequence[Floats],
+) -> PictureVerification:
+    """Return a verification with the places of its findings in the file's picture."""
+    grid = transcript.grid
+
+    def corners(line: int, cell: int, stop: int) -> Floats:
+        return page.scale * turn.back(grid.corners(line, cell, stop))
+
+    boxes = []
+    for finding in verification.findings:
+        line, cell = transcript.line_cell(finding.start)
+        stop = max(cell + 1, min(cell + finding.stop - finding.start, grid.count))
+        boxes.append(corners(min(line, len(grid.middles) - 1), cell, stop))
+    doubts = [
+        (cell, corners(cell.line, cell.cell, cell.cell + 1))
+        for cell in transcript.cells
+        if cell.state != "holds"
+    ]
+    return PictureVerification(
+        page.number,
+        verification,
+        tuple(boxes),
+        tuple(doubts),
+        tuple(page.scale * turn.back(mark) for mark in marks),
+        (),
+        page.grey,
+        page.scale,
+    )
