@@ -18,6 +18,7 @@ from .picture import Floats
 
 NUMBER = "#"  # a number's cells in a row
 REPLY = "&"  # those of a reply: numbers with commas between
+OPTIONAL = "_"  # a blank that may be absent, which has no index in its row
 BESIDE = ""  # what is beside a row on its line
 FOREIGN_COST = 2.2  # of an inked cell beside a row: half that of one other character in the row
 UNLIKE_COST = 8.0  # of complete unlikeness
@@ -67,7 +68,7 @@ def costs_of(odds: Floats, unlike: Floats, numeric: str = NUMERIC) -> dict[str, 
         character: is_inked + UNLIKE_COST * np.minimum(unlike[:, :, k], 0.5)
         for k, character in enumerate(CHARACTERS)
     }
-    costs[BLANK] = is_blank
+    costs[BLANK] = costs[OPTIONAL] = is_blank
     costs[BESIDE] = np.minimum(is_blank, FOREIGN_COST)
     costs[NUMBER] = NUMBER_COST + np.min([costs[c] for c in numeric + "E"], axis=0)
     costs[REPLY] = np.minimum(costs[NUMBER], np.minimum(NUMBER_COST + costs[","], is_blank))
@@ -84,18 +85,20 @@ def align(costs: dict[str, Floats], rows: Sequence[str]) -> Alignment:
     rows : sequence of str
         Texts; `NUMBER` and `REPLY` in them last any number of cells, runs of blanks, too.
     """
-    states, row_of, source = [], [], []
+    states: list[str] = []
+    row_of: list[int] = []
+    source: list[int] = []
     for number, row in enumerate(rows):
-        tokens = [(match[0][0], match.start()) for match in re.finditer(r" +|\S", row.strip())]
-        shift = len(row) - len(row.lstrip())
-        states += [BESIDE, *(token for token, _ in tokens), BESIDE]
+        tokens = [*re.finditer(r"(?<=\S) +|\S", row)]
+        starts = [match.start() - row[: match.start()].count(OPTIONAL) for match in tokens]
+        states += [BESIDE, *(match[0][0] for match in tokens), BESIDE]
         row_of += [number] * (len(tokens) + 2)
-        source += [-1, *(start + shift for _, start in tokens), -1]
+        source += [-1, *starts, -1]
     rows_of_states = np.array(row_of)
     cost = np.stack([costs[state] for state in states])
-    may_stay = np.array([state in (BESIDE, BLANK, NUMBER, REPLY) for state in states])
+    may_stay = np.array([state in (BESIDE, BLANK, OPTIONAL, NUMBER, REPLY) for state in states])
     is_first = np.r_[True, np.diff(rows_of_states) > 0]
-    may_skip = np.r_[False, np.array([state in (BLANK, REPLY) for state in states[:-1]])]
+    may_skip = np.r_[False, np.array([state in (BLANK, OPTIONAL, REPLY) for state in states[:-1]])]
     count, lines, cells = cost.shape
     stay = np.where(may_stay, 0.0, np.inf)[:, None]
     step = np.where(is_first, np.inf, 0.0)[:, None]
@@ -123,7 +126,7 @@ def align(costs: dict[str, Floats], rows: Sequence[str]) -> Alignment:
 
 
 def _skip_cost(state: str) -> float:
-    return 0.0 if state == REPLY else SKIP_COST
+    return SKIP_COST if state == BLANK else 0.0
 
 
 def _shifted(total: Floats, by: int) -> Floats:

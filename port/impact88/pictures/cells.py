@@ -223,9 +223,9 @@ def _apart(rows: Vectors, styles: Vectors) -> Vectors:
     """Return 1 - cos φ of each cell, style and glyph at the best shift."""
     tall, width = sum(CAPITALS), CELL_WIDTH
     glyphs = styles.reshape(-1, tall * width).T
-    padded = np.pad(rows, ((0, 0), (2, 2), (1, 1)))
+    padded = np.pad(rows, ((0, 0), (3, 3), (1, 1)))
     best = np.full((len(rows), glyphs.shape[1]), -1, np.float32)
-    for y, x in product(range(5), range(3)):
+    for y, x in product(range(7), range(3)):
         shifted = padded[:, y : y + tall, x : x + width].reshape(len(rows), -1)
         norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
         np.maximum(best, shifted @ glyphs / norm, out=best)

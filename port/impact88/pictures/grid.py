@@ -250,8 +250,8 @@ def _grid(ink: Image, points: Points, tilt: tuple[float, float]) -> Grid | None:
     x, y, span = points
     level = y - x * (tilt[0] + tilt[1] * y / span)
     lines = _lines(points, level)
-    height = float(np.median([foot - top for top, foot in lines])) if lines else 0.0
-    lines = [(top, foot) for top, foot in lines if foot - top > 0.25 * height]
+    height = _usual_height(level, lines)
+    lines = [(top, foot) for top, foot in lines if foot - top > 0.3 * height]
     if not MIN_LINES <= len(lines) <= MAX_LINES or height < MIN_HEIGHT:
         return None
     members = [np.flatnonzero((level >= top) & (level < foot)) for top, foot in lines]
@@ -282,6 +282,18 @@ def _grid(ink: Image, points: Points, tilt: tuple[float, float]) -> Grid | None:
         clarity=clarity,
         own=np.zeros((len(middles), 4)),
     )
+
+
+def _usual_height(level: Floats, lines: Sequence[tuple[float, float]]) -> float:
+    """Return the height of lines of type: the median, weighted with their ink."""
+    if not lines:
+        return 0.0
+    heights = np.array([foot - top for top, foot in lines])
+    places = np.sort(level)
+    inked = np.diff(np.searchsorted(places, np.array(lines)), axis=1)[:, 0]
+    order = np.argsort(heights)
+    cumulative = np.cumsum(inked[order])
+    return float(heights[order][np.searchsorted(cumulative, cumulative[-1] / 2)])
 
 
 def _distinct(middles: Floats, weights: Sequence[int], height: float) -> Floats:

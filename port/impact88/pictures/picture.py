@@ -24,6 +24,7 @@ MAX_SIDE = 4000  # pixels of a page as it is read: 20 for each of 200 columns
 MIN_SIDE = 100  # pixels of the shorter side: 13 lines of type have more
 BLOCK = 4  # pixels a side that are averaged to find the paper
 TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
+PAPER = 80  # percentile of the darkness that is still paper: type covers a tenth of a page
 GRAIN = 0.08  # darkness that is never ink
 SURROUND = 0.8  # brightness of what surrounds a page, relative to the page, at most
 MIN_STEP = 0.08  # logarithm of brightness across the edge of a page; the hardest shadow has 0.04
@@ -178,6 +179,8 @@ def ink_of(grey: Image) -> Image:
     around = paper[rows[:, None], columns]
     ink = np.clip(1 - grey / np.maximum(around, 1), 0, 1)
     ink[np.isinf(around)] = 0
+    # the paper was closed over its own grain, and is found too light
+    ink = np.maximum(ink - np.percentile(ink[::4, ::4], PAPER), 0)
     sample = ink[::3, ::3]
     sample = sample[sample > GRAIN]
     if sample.size < 50:

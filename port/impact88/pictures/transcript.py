@@ -19,7 +19,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ..printouts import Verdict, Verification, judge
 from ..printouts.page import REPLIES, ROWS, PrintedChar
-from .align import BESIDE, NUMBER, REPLY, Alignment, align, costs_of
+from .align import BESIDE, NUMBER, OPTIONAL, REPLY, Alignment, align, costs_of
 from .cells import (
     BLANK,
     CHARACTERS,
@@ -46,12 +46,16 @@ MIN_GAIN = 0.5  # gain of a row for each of its characters from which a line is 
 MIN_INKED = 50  # cells with type of a page
 MAX_OFF = 0.1  # fraction of the cells that contradict a page, from which it is of another scene
 MAX_UNLIKE = 0.45  # distance of type from its mean, as a fraction of the mean's energy
-MIN_CLEAR = 0.12  # difference of the distances to the two nearest means, as such a fraction
 ROUNDS = 3  # readings by the page's own means
 UNREAD = "?"
 IN_NUMBERS = NUMERIC + "E"
 TEMPLATES = [
-    re.sub(r"{(\w+)}", lambda match: REPLY if match[1] in REPLIES else NUMBER, row) for row in ROWS
+    re.sub(
+        "(?<=[:,])|(?=:)",
+        OPTIONAL,
+        re.sub(r"{(\w+)}", lambda match: REPLY if match[1] in REPLIES else NUMBER, row),
+    )
+    for row in ROWS
 ]
 """The program's rows, numbers and replies as wildcards."""
 
@@ -157,18 +161,15 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
     reader.name_numbers()
     for _ in range(ROUNDS):
         reader.read()
-    transcript = Transcript(grid, gain=gain)
+    transcript = Transcript(grid, gain=gain, text=reader.text())
     for _ in range(ROUNDS):
-        transcript.text = reader.text()
         sheets = judge(transcript.text, given)
+        if [s.page for s in sheets] == [s.page for s in transcript.sheets]:
+            break
         if not reader.predict(sheets):
             break
         transcript.sheets = sheets
-        before = reader.names.copy()
         reader.read(reader.trusted())
-        if (before == reader.names).all():
-            break
-    if transcript.sheets:
         transcript.cells = reader.measure()
         transcript.text = reader.final_text(transcript.cells)
     return transcript
@@ -209,7 +210,8 @@ class Reader:
         states = np.array(rows.states)[rows.paths]
         is_row = _is_explained(rows, TEMPLATES)[:, None]
         is_number = is_row & ((states == NUMBER) | (states == REPLY))
-        is_label = is_row & ~is_number & (states != BESIDE) & (states != BLANK)
+        is_label = is_row & ~is_number & (states != BESIDE)
+        is_label &= (states != BLANK) & (states != OPTIONAL)
         self.is_number = is_number.ravel() & self.inked
         self.is_label = is_label.ravel() & self.inked
         self.names = np.where(self.is_label, states.ravel(), BLANK).astype("<U1")
@@ -256,12 +258,17 @@ class Reader:
         to[:, face.counts < MIN_MEMBERS] *= 4  # what was read once or twice may be misread
         is_numeric = np.array([name in IN_NUMBERS + "," for name in face.names])
         in_numbers = np.where(is_numeric, to, np.inf)
+        for name, distance in zip(face.names, to.T, strict=True):
+            if name in CHARACTERS:
+                off = distance / face.energy[face.names.index(name)]
+                self.unlike[inked, CHARACTERS.index(name)] = np.minimum(off / 2, 1.0)
         to = np.where(self.is_number[inked][:, None], in_numbers, to)
-        nearest = np.array([*face.names])[to.argmin(axis=1)]
-        energy = face.energy[to.argmin(axis=1)]
-        is_type = to.min(axis=1) < MAX_UNLIKE * energy
-        two = np.sort(to, axis=1)[:, :2]
-        is_clear = two[:, 1] - two[:, 0] > MIN_CLEAR * energy
+        best = to.argmin(axis=1)
+        nearest = np.array([*face.names])[best]
+        is_type = to.min(axis=1) < MAX_UNLIKE * face.energy[best]
+        steps = to - to.min(axis=1)[:, None]
+        steps[np.arange(len(best)), best] = np.inf
+        is_clear = (steps / face.between()[best, :-1]).min(axis=1) > DIFFERS
         self.names = np.full(len(names), BLANK, dtype="<U1")
         self.names[inked] = np.where(is_type | self.is_number[inked], nearest, BLANK)
         self.names[self.is_label] = names[self.is_label]
@@ -319,7 +326,7 @@ class Reader:
         taken = linear_sum_assignment(-(gains - 0.5 * order))  # rows that are alike, in order
         placed = []
         for number, line in zip(*taken, strict=True):
-            size = len(texts[number].replace(BLANK, ""))
+            size = len(re.sub(f"[{OPTIONAL} ]", "", texts[number]))
             if gains[number, line] < MIN_GAIN * size:
                 continue
             path = self.align_line(int(line), texts[number])
@@ -338,6 +345,7 @@ class Reader:
         self, row: Sequence[PrintedChar], text: str, line: int, cells: Mapping[int, int]
     ) -> None:
         start = line * self.shape[1]
+        text = text.replace(OPTIONAL, "")
         names = {printed.column: printed.name for printed in row}
         for column, cell in cells.items():
             if text[column] in (REPLY, BLANK):
@@ -386,7 +394,9 @@ class Reader:
         cells = []
         for i, at in enumerate(asked.tolist()):
             in_number = self.fields[at] != ""
-            others = np.flatnonzero((is_numeric | (not in_number)) & (np.arange(blank + 1) != own[i]))
+            others = np.flatnonzero(
+                (is_numeric | (not in_number)) & (np.arange(blank + 1) != own[i])
+            )
             if own[i] == blank:  # how much of a character's energy is there
                 best = others[np.argmin(to[i, others])]
                 margin = (to[i, blank] - to[i, best]) / energy[best] if self.inked[at] else -1.0
@@ -427,7 +437,7 @@ class Reader:
 
 def _is_explained(rows: Alignment, texts: Sequence[str]) -> NDArray[np.bool_]:
     """Return which lines one of the rows explains."""
-    sizes = np.array([len(re.sub(f"[{NUMBER}{REPLY} ]", "", text)) for text in texts])
+    sizes = np.array([len(re.sub(f"[{NUMBER}{REPLY}{OPTIONAL} ]", "", text)) for text in texts])
     best = rows.gains.argmax(axis=1)
     return np.asarray(rows.gains.max(axis=1) > MIN_GAIN * np.maximum(sizes[best], 5))
 
@@ -438,4 +448,4 @@ def _row_text(row: Sequence[PrintedChar]) -> str:
         printed.column: REPLY if printed.name in REPLIES else printed.char for printed in row
     }
     text = "".join(columns.get(column, BLANK) for column in range(max(columns) + 1))
-    return re.sub(f"{REPLY}+", REPLY, text)
+    return re.sub("(?<=[:,])|(?=:)", OPTIONAL, re.sub(f"{REPLY}+", REPLY, text))

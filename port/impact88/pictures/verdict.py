@@ -144,9 +144,7 @@ class _Turn:
         return np.stack([x + self.size[1] / 2, y + self.size[0] / 2], axis=1)
 
 
-def _transcripts(
-    page: Page, scene: Mapping[str, str] | None
-) -> list[tuple[Transcript, _Turn]]:
+def _transcripts(page: Page, scene: Mapping[str, str] | None) -> list[tuple[Transcript, _Turn]]:
     """Return the transcripts of a page in the quarter turn in which the program's rows fit."""
     ink = ink_of(page.grey)
     points = points_of(ink)
@@ -191,9 +189,7 @@ def _blanked(match: re.Match[str]) -> str:
     return str(match[1]).ljust(len(match[0]))
 
 
-def _gated(
-    result: Verification, transcript: Transcript, marks: Sequence[Floats]
-) -> Verdict:
+def _gated(result: Verification, transcript: Transcript, marks: Sequence[Floats]) -> Verdict:
     """Return the verdict on a picture: that of its text, held back by cells and marks."""
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
