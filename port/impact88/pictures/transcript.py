@@ -17,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from ..printouts import Verdict, Verification, judge
+from ..printouts import Verification, judge
 from ..printouts.page import REPLIES, ROWS, PrintedChar
 from .align import BESIDE, NUMBER, OPTIONAL, REPLY, Alignment, align, costs_of
 from .cells import (
     BLANK,
     CHARACTERS,
-    DIGITS,
     NUMERIC,
     WIDEST_SAMPLE,
     Cells,
@@ -355,9 +354,9 @@ class Reader:
             for beside, near in ((column - 1, cell - 1), (column + 1, cell + 1)):
                 is_gap = beside not in names or beside >= len(text)
                 is_free = 0 <= near < self.shape[1] and not self.predicted[start + near]
-                if is_gap and is_free and near not in cells.values():
-                    self.predicted[start + near] = BLANK
-                elif is_gap and is_free and text[beside : beside + 1] == BLANK:
+                if (is_gap and is_free and near not in cells.values()) or (
+                    is_gap and is_free and text[beside : beside + 1] == BLANK
+                ):
                     self.predicted[start + near] = BLANK
                 if is_gap and is_free and names[column] not in ("", *REPLIES):
                     self.fields[start + near] = names[column]

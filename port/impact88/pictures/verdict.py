@@ -10,7 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from ..errors import UserError
-from ..printouts import VERDICTS, Finding, Kind, Verdict, Verification, judge
+from ..printouts import VERDICTS, Verdict, Verification, judge
 from ..printouts.page import REPLIES
 from .grid import STEEP, grids_of, is_on_side, skew_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
