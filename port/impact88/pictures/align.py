@@ -23,7 +23,7 @@ BESIDE = ""  # what is beside a row on its line
 FOREIGN_COST = 2.2  # of an inked cell beside a row: half that of one other character in the row
 UNLIKE_COST = 8.0  # of complete unlikeness
 NUMBER_COST = 0.3  # of a cell of a number, which may be any of its characters
-SKIP_COST = 3.0  # of a blank that is missing
+SKIP_COST = 1.0  # of a blank that is missing
 
 
 class Alignment(NamedTuple):
@@ -90,7 +90,10 @@ def align(costs: dict[str, Floats], rows: Sequence[str]) -> Alignment:
     source: list[int] = []
     for number, row in enumerate(rows):
         tokens = [*re.finditer(r"(?<=\S) +|\S", row)]
-        starts = [match.start() - row[: match.start()].count(OPTIONAL) for match in tokens]
+        starts = [
+            -1 if match[0] == OPTIONAL else match.start() - row[: match.start()].count(OPTIONAL)
+            for match in tokens
+        ]
         states += [BESIDE, *(match[0][0] for match in tokens), BESIDE]
         row_of += [number] * (len(tokens) + 2)
         source += [-1, *starts, -1]

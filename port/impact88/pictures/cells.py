@@ -100,7 +100,8 @@ def distances(cells: Cells, means: Vectors) -> Floats:
     energy = np.maximum(np.einsum("mp,mp->m", means, means), 1e-6)
     strength = np.clip(inner / energy, *STRENGTHS)
     squares = cells.norms[:, :, None] - 2 * strength * inner + strength**2 * energy
-    return np.maximum(squares.min(axis=1).astype(float), 0)
+    least: Floats = np.maximum(squares.min(axis=1).astype(float), 0)
+    return least
 
 
 class Typeface(NamedTuple):
@@ -113,7 +114,7 @@ class Typeface(NamedTuple):
     means : ndarray, shape (names, pixels)
     counts : ndarray, shape (names,)
         Cells of which each mean was made.
-    index : ndarray, shape (cells,)
+    owners : ndarray, shape (cells,)
         Each cell's character, -1 for none.
     members : ndarray, shape (cells, pixels)
         The cells shifted onto their means.
@@ -126,7 +127,7 @@ class Typeface(NamedTuple):
     names: str
     means: Vectors
     counts: NDArray[np.intp]
-    index: NDArray[np.intp]
+    owners: NDArray[np.intp]
     members: Vectors
     shifts: NDArray[np.intp]
     shape: tuple[int, int]
@@ -134,11 +135,12 @@ class Typeface(NamedTuple):
     @property
     def energy(self) -> Floats:
         """Squared norm of each mean."""
-        return np.maximum(np.einsum("mp,mp->m", self.means, self.means), 1e-3).astype(float)
+        energy: Floats = np.einsum("mp,mp->m", self.means, self.means).astype(float)
+        return np.maximum(energy, 1e-3)
 
     def without(self, cell: int) -> Vectors | None:
         """Return the mean of a cell's character without the cell, None if it is alone."""
-        name = self.index[cell]
+        name = self.owners[cell]
         if name < 0 or self.counts[name] < 2:
             return None
         count = self.counts[name]
@@ -216,7 +218,8 @@ def unlikeness(cells: Cells) -> Floats:
     flat = flat / np.linalg.norm(flat, axis=2, keepdims=True)
     sample = rows[:: max(1, len(rows) // 40)]
     fits = _apart(sample, flat).min(axis=2).sum(axis=0)
-    return _apart(rows, flat[np.argsort(fits)[:STYLES]]).min(axis=1).astype(float)
+    least: Floats = _apart(rows, flat[np.argsort(fits)[:STYLES]]).min(axis=1).astype(float)
+    return least
 
 
 def _apart(rows: Vectors, styles: Vectors) -> Vectors:
@@ -249,7 +252,8 @@ def _scaled_rows(cells: Cells) -> Vectors:
         order=1,
         mode="grid-constant",
     )
-    return ndimage.gaussian_filter(rows, (0, 0.5, 0.5))
+    smooth: Vectors = ndimage.gaussian_filter(rows, (0, 0.5, 0.5))
+    return smooth
 
 
 def pair_distances(cells: Cells) -> Floats:

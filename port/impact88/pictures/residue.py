@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from .grid import CELL_WIDTH, Grid
 from .picture import Floats
 
 DARK = 0.45  # ink from which a place belongs to a mark
+BORDER = np.array([4, 5])  # pixels of a resampled page by which type may leave its cell
 MIN_AREA = 0.12  # of a mark, in squares of a cell's width: a full stop has as much
 
 
-def marks_of(grid: Grid, text: str) -> list[Floats]:
+def marks_of(grid: Grid, filled: NDArray[np.bool_]) -> list[Floats]:
     """Return the marks outside the cells that a transcript fills.
 
     Parameters
     ----------
     grid : Grid
         The page.
-    text : str
-        Its transcript, a character for each cell.
+    filled : ndarray of bool, shape (lines, cells)
+        The cells of which the transcript explains the ink.
 
     Returns
     -------
@@ -28,13 +30,11 @@ def marks_of(grid: Grid, text: str) -> list[Floats]:
         Corners of each mark on the page, pixels, clockwise.
     """
     is_free = np.ones(grid.ink.shape, bool)
-    for line, row in enumerate(text.split("\n")):
-        for cell in range(len(row)):
-            if row[cell] != " ":
-                corners = grid.corners(line, cell) * grid.scale
-                left, top = np.maximum(corners.min(axis=0) - [4, 5], 0).astype(int)
-                right, foot = np.ceil(corners.max(axis=0) + [4, 5]).astype(int)
-                is_free[top:foot, left:right] = False
+    for line, cell in np.argwhere(filled).tolist():
+        corners = grid.corners(line, cell) * grid.scale
+        left, top = np.maximum(corners.min(axis=0) - BORDER, 0).astype(int)
+        right, foot = np.ceil(corners.max(axis=0) + BORDER).astype(int)
+        is_free[top:foot, left:right] = False
     dark = (grid.ink > DARK) & is_free
     labels, _ = ndimage.label(ndimage.binary_closing(dark, np.ones((3, 3))))
     areas = np.bincount(labels[dark], minlength=labels.max() + 1)

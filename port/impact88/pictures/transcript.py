@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from ..printouts import Verification, judge
 from ..printouts.page import REPLIES, ROWS, PrintedChar
-from .align import BESIDE, NUMBER, OPTIONAL, REPLY, Alignment, align, costs_of
+from .align import BESIDE, NUMBER, OPTIONAL, REPLY, align, costs_of
 from .cells import (
     BLANK,
     CHARACTERS,
@@ -39,6 +38,9 @@ from .picture import Floats
 
 HOLDS = -0.1  # measure of a cell below which it is the predicted character
 DIFFERS = 0.35  # measure above which it is another
+MIN_DISTANCE = (
+    3.0  # distance from the predicted mean, in the page's usual, below which none differs
+)
 MAX_FOREIGN = 8.0  # distance of a cell from its character's mean, in the page's usual distances
 MIN_MEMBERS = 3  # cells of which a mean is made that a cell is found to be like
 MIN_GAIN = 0.5  # gain of a row for each of its characters from which a line is taken for it
@@ -46,11 +48,14 @@ MIN_INKED = 50  # cells with type of a page
 MAX_OFF = 0.1  # fraction of the cells that contradict a page, from which it is of another scene
 MAX_UNLIKE = 0.45  # distance of type from its mean, as a fraction of the mean's energy
 ROUNDS = 3  # readings by the page's own means
+SCREEN = 40  # columns of an Apple's screen
+MIN_SIZE = 5  # characters that a row is taken to have at least, for `MIN_GAIN`
 UNREAD = "?"
+WILD = re.compile(f"[{NUMBER}{REPLY}{OPTIONAL} ]")
 IN_NUMBERS = NUMERIC + "E"
 TEMPLATES = [
     re.sub(
-        "(?<=[:,])|(?=:)",
+        "(?<=[:,])",
         OPTIONAL,
         re.sub(r"{(\w+)}", lambda match: REPLY if match[1] in REPLIES else NUMBER, row),
     )
@@ -104,7 +109,8 @@ class Cell(NamedTuple):
         is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
         if not self.name:
             is_known &= self.members >= MIN_MEMBERS
-        return "differs" if self.margin > DIFFERS and is_known else "doubt"
+        is_far = self.margin > DIFFERS and self.distance > MIN_DISTANCE
+        return "differs" if is_far and is_known else "doubt"
 
 
 @dataclass
@@ -116,25 +122,36 @@ class Transcript:
     grid : Grid
         Its grid.
     text : str
-        A line for each line of the grid, a character for each cell: the character of line l and
-        cell c has the offset l (count + 1) + c. `UNREAD` is what was not read.
+        A line for each line of the grid, or for lines that a narrow screen broke; a character for
+        each cell. `UNREAD` is what was not read.
+    places : ndarray
+        The index of each character's cell, line by line; that of the cell before for a newline.
     cells : list of Cell
         The predicted cells.
     gain : float
-        How well the program's rows explain the page.
+        How well the program's rows explain the page, for each cell with type.
     sheets : list of Verification
         The printouts by which cells were predicted.
     """
 
     grid: Grid
     text: str = ""
+    places: NDArray[np.intp] = field(default_factory=lambda: np.zeros(1, int))
     cells: list[Cell] = field(default_factory=list)
     gain: float = 0.0
     sheets: list[Verification] = field(default_factory=list)
 
     def line_cell(self, offset: int) -> tuple[int, int]:
         """Return line and cell of an offset of the text."""
-        return divmod(offset, self.grid.count + 1)
+        place = self.places[min(offset, len(self.places) - 1)]
+        return divmod(int(place), self.grid.count)
+
+    def filled(self) -> NDArray[np.bool_]:
+        """Return which cells hold type, shape (lines, cells)."""
+        filled = np.zeros(len(self.grid.middles) * self.grid.count, bool)
+        is_type = np.array([char not in " \n" for char in self.text + "\n"])
+        filled[self.places[is_type]] = True
+        return filled.reshape(-1, self.grid.count)
 
 
 def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript:
@@ -150,17 +167,17 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
     reader = Reader(grid, cells_of(grid))
     if reader.inked.sum() < MIN_INKED:
         return Transcript(grid)
-    rows = reader.align(TEMPLATES)
-    gain = float(rows.gains.max(axis=1).sum())
+    rows = reader.place_rows(TEMPLATES)
+    gain = sum(placed.gain for placed in rows) / int(reader.inked.sum())
     if not reader.name_labels(rows):
         return Transcript(grid, gain=gain)
     grid = reader.registered()
     reader = Reader(grid, cells_of(grid))
-    reader.name_labels(reader.align(TEMPLATES))
+    reader.name_labels(reader.place_rows(TEMPLATES))
     reader.name_numbers()
     for _ in range(ROUNDS):
         reader.read()
-    transcript = Transcript(grid, gain=gain, text=reader.text())
+    transcript = Transcript(grid, reader.text(reader.names), reader.places(), gain=gain)
     for _ in range(ROUNDS):
         sheets = judge(transcript.text, given)
         if [s.page for s in sheets] == [s.page for s in transcript.sheets]:
@@ -172,6 +189,30 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
         transcript.cells = reader.measure()
         transcript.text = reader.final_text(transcript.cells)
     return transcript
+
+
+class Placement(NamedTuple):
+    """A row of type on the page.
+
+    Parameters
+    ----------
+    row : int
+        Its index.
+    gain : float
+        By how much it explains its line better than nothing does.
+    cells : ndarray
+        Indices of the line's cells.
+    states : list of str
+        What each holds (`align.Alignment`).
+    sources : ndarray
+        Index of each in the row's text, -1 beside it.
+    """
+
+    row: int
+    gain: float
+    cells: NDArray[np.intp]
+    states: list[str]
+    sources: NDArray[np.intp]
 
 
 class Reader:
@@ -198,22 +239,69 @@ class Reader:
         self.is_number = np.zeros(len(cells.odds), bool)
         self.predicted = np.full(len(cells.odds), "", dtype="<U1")
         self.fields = np.full(len(cells.odds), "", dtype="<U8")
+        self.units = _units(self.inked.reshape(self.shape))
+        self.layout = [*np.arange(len(cells.odds)).reshape(self.shape)]
 
-    def align(self, rows: Sequence[str]) -> Alignment:
-        """Return the best of some rows for each line."""
-        odds = self.cells.odds.reshape(self.shape)
-        return align(costs_of(odds, self.unlike.reshape(*self.shape, -1)), rows)
+    def place_rows(
+        self, texts: Sequence[str], ends: Sequence[tuple[int, int]] = ()
+    ) -> list[Placement]:
+        """Return where rows are on the page, each line taken once.
 
-    def name_labels(self, rows: Alignment) -> bool:
+        Parameters
+        ----------
+        texts : sequence of str
+            The rows (`align.align`).
+        ends : sequence of (int, int), optional
+            First and last line of the printout of each row.
+        """
+        wide = max(map(len, self.units))
+        flat = np.array(
+            [np.pad(unit, (0, wide - len(unit)), constant_values=-1) for unit in self.units]
+        )
+        odds = np.where(flat < 0, -6.0, self.cells.odds[flat])
+        unlike = np.where(flat[:, :, None] < 0, 1.0, self.unlike[flat])
+        costs = costs_of(odds, unlike)
+        rows = align(costs, texts)
+        gains = rows.gains.copy()
+        lines = [{*np.unique(unit // self.shape[1]).tolist()} for unit in self.units]
+        first = np.array([min(part) for part in lines])
+        last = np.array([max(part) for part in lines])
+        for row, (start, stop) in enumerate(ends):
+            gains[(first < start) | (last > stop), row] = -np.inf
+        sizes = np.array([max(MIN_SIZE, len(WILD.sub("", text))) for text in texts])
+        gains[gains < MIN_GAIN * sizes] = -np.inf
+        # rows that are alike keep their order, and no more lines are joined than needed
+        order = np.abs(np.linspace(0, 1, len(gains))[:, None] - np.linspace(0, 1, len(texts)))
+        ranks = gains - 0.5 * order - (last - first)[:, None]
+        placements: list[Placement] = []
+        for unit in _best_units(ranks.max(axis=1), first, last):
+            row = int(ranks[unit].argmax())
+            part = align({name: cost[[unit]] for name, cost in costs.items()}, [texts[row]])
+            inside = flat[unit] >= 0
+            path = part.paths[0, inside]
+            states = [part.states[state] for state in path]
+            placements.append(
+                Placement(
+                    row, float(gains[unit, row]), flat[unit][inside], states, part.sources[path]
+                )
+            )
+        return placements
+
+    def name_labels(self, placements: Sequence[Placement]) -> bool:
         """Name the cells of labels, and mark those of numbers. Return False without any."""
-        states = np.array(rows.states)[rows.paths]
-        is_row = _is_explained(rows, TEMPLATES)[:, None]
-        is_number = is_row & ((states == NUMBER) | (states == REPLY))
-        is_label = is_row & ~is_number & (states != BESIDE)
-        is_label &= (states != BLANK) & (states != OPTIONAL)
-        self.is_number = is_number.ravel() & self.inked
-        self.is_label = is_label.ravel() & self.inked
-        self.names = np.where(self.is_label, states.ravel(), BLANK).astype("<U1")
+        joined = [placed.cells for placed in placements if len(placed.cells) > self.shape[1]]
+        is_joined = np.zeros(self.shape[0], bool)
+        is_joined[[cell // self.shape[1] for unit in joined for cell in unit[::SCREEN]]] = True
+        lines = [unit for unit, taken in zip(self.layout, is_joined, strict=True) if not taken]
+        self.layout = sorted([*lines, *joined], key=lambda unit: int(unit[0]))
+        for placed in placements:
+            states = np.array(placed.states)
+            is_wild = (states == NUMBER) | (states == REPLY)
+            is_label = ~is_wild & ~np.isin(states, [BESIDE, BLANK, OPTIONAL])
+            self.is_number[placed.cells] |= is_wild & self.inked[placed.cells]
+            self.is_label[placed.cells] |= is_label & self.inked[placed.cells]
+            chosen = placed.cells[is_label & self.inked[placed.cells]]
+            self.names[chosen] = states[is_label & self.inked[placed.cells]]
         return bool(self.is_label.any())
 
     def registered(self) -> Grid:
@@ -223,7 +311,7 @@ class Reader:
         lines, columns = np.divmod(chosen, self.shape[1])
         unit = self.grid.pitch / CELL_WIDTH
         own = np.zeros((self.shape[0], 4))
-        is_sure = face.counts[face.index] >= MIN_MEMBERS
+        is_sure = face.counts[face.owners] >= MIN_MEMBERS
         for line in range(self.shape[0]):
             at = (lines == line) & is_sure
             if at.sum() < 3:
@@ -281,16 +369,20 @@ class Reader:
 
     def _leave_one_out(self, sample: Cells, face: Typeface, to: Floats) -> Floats:
         """Return distances with each cell left out of its own character's mean."""
-        for cell in np.flatnonzero(face.index >= 0).tolist():
+        for cell in np.flatnonzero(face.owners >= 0).tolist():
             mean = face.without(cell)
             if mean is not None:
                 part = sample.at(np.array([cell]))
-                to[cell, face.index[cell]] = distances(part, mean[None])[0, 0]
+                to[cell, face.owners[cell]] = distances(part, mean[None])[0, 0]
         return to
 
-    def text(self) -> str:
-        """Return the names as text."""
-        return "\n".join("".join(row) for row in self.names.reshape(self.shape))
+    def text(self, names: NDArray[np.str_]) -> str:
+        """Return names as text, lines that a screen broke in one."""
+        return "\n".join("".join(names[unit]) for unit in self.layout)
+
+    def places(self) -> NDArray[np.intp]:
+        """Return the index of the cell of each character of `text`."""
+        return np.concatenate([np.append(unit, unit[-1]) for unit in self.layout])
 
     def predict(self, sheets: Sequence[Verification]) -> bool:
         """Predict cells by the pages of printouts. Return False without any."""
@@ -302,64 +394,34 @@ class Reader:
             by_row: dict[int, list[PrintedChar]] = {}
             for printed in sheet.page:
                 by_row.setdefault(printed.row, []).append(printed)
-            lines = [offset // (self.shape[1] + 1) for offset in sheet.span]
+            places = self.places()[[sheet.span[0], sheet.span[1] - 1]]
+            lines = (places // self.shape[1]).tolist()
             rows += by_row.values()
             ends += [(lines[0], lines[1])] * len(by_row)
         if not rows:
             return False
         texts = [*map(_row_text, rows)]
-        for number, line, offsets in self._place_rows(texts, ends):
-            self._predict_row(rows[number], texts[number], line, offsets)
+        placements = sorted(self.place_rows(texts, ends), key=lambda placed: placed.gain)
+        for placed in {placed.row: placed for placed in placements}.values():  # the best of a row
+            self._predict_row(rows[placed.row], texts[placed.row].replace(OPTIONAL, ""), placed)
         return True
 
-    def _place_rows(
-        self, texts: Sequence[str], ends: Sequence[tuple[int, int]]
-    ) -> list[tuple[int, int, dict[int, int]]]:
-        """Return which line each row is, and the cells of its characters."""
-        rows = self.align(texts)
-        lines = np.arange(self.shape[0])
-        gains = rows.gains.T.copy()
-        for number, (first, last) in enumerate(ends):
-            gains[number, (lines < first) | (lines > last)] = -1e3
-        order = np.abs(np.linspace(0, 1, len(texts))[:, None] - np.linspace(0, 1, len(lines)))
-        taken = linear_sum_assignment(-(gains - 0.5 * order))  # rows that are alike, in order
-        placed = []
-        for number, line in zip(*taken, strict=True):
-            size = len(re.sub(f"[{OPTIONAL} ]", "", texts[number]))
-            if gains[number, line] < MIN_GAIN * size:
-                continue
-            path = self.align_line(int(line), texts[number])
-            placed.append((int(number), int(line), path))
-        return placed
-
-    def align_line(self, line: int, text: str) -> dict[int, int]:
-        """Return the cell of each character of a row on a line, by its index in the row."""
-        part = slice(line * self.shape[1], (line + 1) * self.shape[1])
-        odds, unlike = self.cells.odds[None, part], self.unlike[None, part]
-        rows = align(costs_of(odds, unlike), [text])
-        sources = rows.sources[rows.paths[0]]
-        return {int(source): cell for cell, source in enumerate(sources) if source >= 0}
-
-    def _predict_row(
-        self, row: Sequence[PrintedChar], text: str, line: int, cells: Mapping[int, int]
-    ) -> None:
-        start = line * self.shape[1]
-        text = text.replace(OPTIONAL, "")
+    def _predict_row(self, row: Sequence[PrintedChar], text: str, placed: Placement) -> None:
+        """Predict the cells of a row, and blanks beside its words."""
         names = {printed.column: printed.name for printed in row}
-        for column, cell in cells.items():
-            if text[column] in (REPLY, BLANK):
+        sources = placed.sources.tolist()
+        for at, column in enumerate(sources):
+            if column not in names or text[column] == REPLY:
                 continue
-            self.predicted[start + cell] = text[column]
-            self.fields[start + cell] = names[column]
-            for beside, near in ((column - 1, cell - 1), (column + 1, cell + 1)):
-                is_gap = beside not in names or beside >= len(text)
-                is_free = 0 <= near < self.shape[1] and not self.predicted[start + near]
-                if (is_gap and is_free and near not in cells.values()) or (
-                    is_gap and is_free and text[beside : beside + 1] == BLANK
-                ):
-                    self.predicted[start + near] = BLANK
-                if is_gap and is_free and names[column] not in ("", *REPLIES):
-                    self.fields[start + near] = names[column]
+            self.predicted[placed.cells[at]] = text[column]
+            self.fields[placed.cells[at]] = names[column]
+            for step in (-1, 1):
+                if not 0 <= at + step < len(sources) or sources[at + step] in names:
+                    continue
+                near = placed.cells[at + step]
+                if text[column + step : column + step + 1] != REPLY:
+                    self.predicted[near] = BLANK
+                    self.fields[near] = self.fields[near] or names[column]
 
     def trusted(self) -> NDArray[np.str_]:
         """Return the names with those of the predicted page, unless many cells contradict it."""
@@ -379,7 +441,7 @@ class Reader:
         kinds = [*face.names, BLANK]
         counts = np.r_[face.counts, 99]
         to = distances(sample, face.means)
-        own = np.where(face.index < 0, blank, face.index)
+        own = np.where(face.owners < 0, blank, face.owners)
         to = self._leave_one_out(sample, face, to)
         to = np.column_stack([to, sample.norms.min(axis=1)])
         energy = np.r_[face.energy, 1e-3]
@@ -431,14 +493,43 @@ class Reader:
                 final[at] = UNREAD
             else:  # a label that is not clearly another is what it must be
                 final[at] = cell.other if cell.state == "differs" else cell.predicted
-        return "\n".join("".join(row) for row in final.reshape(self.shape))
+        return self.text(final)
 
 
-def _is_explained(rows: Alignment, texts: Sequence[str]) -> NDArray[np.bool_]:
-    """Return which lines one of the rows explains."""
-    sizes = np.array([len(re.sub(f"[{NUMBER}{REPLY}{OPTIONAL} ]", "", text)) for text in texts])
-    best = rows.gains.argmax(axis=1)
-    return np.asarray(rows.gains.max(axis=1) > MIN_GAIN * np.maximum(sizes[best], 5))
+def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """Return the runs of cells that may hold a row: each line, and lines joined where a page is as
+    narrow as an Apple's screen, which breaks rows."""
+    lines, count = inked.shape
+    cells = np.arange(lines * count).reshape(lines, count)
+    units = [*cells]
+    margin = _left_margin(inked)
+    is_narrow = inked[:, margin + SCREEN + 1 :].sum() < SCREEN
+    if not is_narrow:
+        return units
+    screen = cells[:, margin : margin + SCREEN]
+    for joined in (2, 3):
+        units += [np.concatenate(screen[k : k + joined]) for k in range(lines - joined + 1)]
+    return units
+
+
+def _best_units(ranks: Floats, first: NDArray[np.intp], last: NDArray[np.intp]) -> list[int]:
+    """Return the units with the largest sum of ranks, no line in two of them."""
+    best = [0.0]
+    chosen: list[list[int]] = [[]]
+    for line in range(int(last.max()) + 1):
+        best.append(best[line])
+        chosen.append(chosen[line])
+        for unit in np.flatnonzero(last == line).tolist():
+            total = best[first[unit]] + ranks[unit]
+            if total > best[-1]:
+                best[-1], chosen[-1] = total, [*chosen[first[unit]], unit]
+    return chosen[-1]
+
+
+def _left_margin(inked: NDArray[np.bool_]) -> int:
+    """Return the column in which most lines begin."""
+    starts = inked[inked.sum(axis=1) > 8].argmax(axis=1)
+    return int(np.bincount(starts).argmax()) if len(starts) else 0
 
 
 def _row_text(row: Sequence[PrintedChar]) -> str:
@@ -447,4 +538,4 @@ def _row_text(row: Sequence[PrintedChar]) -> str:
         printed.column: REPLY if printed.name in REPLIES else printed.char for printed in row
     }
     text = "".join(columns.get(column, BLANK) for column in range(max(columns) + 1))
-    return re.sub("(?<=[:,])|(?=:)", OPTIONAL, re.sub(f"{REPLY}+", REPLY, text))
+    return re.sub("(?<=[:,])", OPTIONAL, re.sub(f"{REPLY}+", REPLY, text))

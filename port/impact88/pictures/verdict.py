@@ -19,8 +19,9 @@ from .transcript import Cell, Transcript, transcribe
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
 MAX_DOUBTFUL = 12  # cells of numbers in doubt, beyond which nothing follows from the others
-MIN_ROW_GAIN = 60.0  # gain of the program's rows from which a page is upright
-"""A page with results only has 150, one upside down 20."""
+MIN_ROW_GAIN = (
+    0.8  # gain of the program's rows for a cell, of a page that is upright: upside down 0.4
+)
 PROMPT = re.compile(r"(?m)^( *ENTER.*?:.*?\?).*$")
 
 
@@ -113,7 +114,7 @@ def verify_page(
 ) -> Iterator[PictureVerification]:
     """Yield the verification of each printout on a page."""
     for transcript, turned in _transcripts(page, scene):
-        marks = marks_of(transcript.grid, transcript.text)
+        marks = marks_of(transcript.grid, transcript.filled())
         for verification in _judged(transcript, marks, scene):
             yield _located(page, transcript, turned, verification, marks)
 
@@ -160,8 +161,8 @@ def _transcripts(page: Page, scene: Mapping[str, str] | None) -> list[tuple[Tran
             turn = replace(turn, slope=slope)
             upright = turn.apply(ink)
         found = [(transcribe(g, scene), turn) for g in grids_of(upright, points_of(upright))]
-        gain = sum(transcript.gain for transcript, _ in found)
-        if gain > sum(transcript.gain for transcript, _ in best):
+        gain = max((transcript.gain for transcript, _ in found), default=0.0)
+        if gain > max((transcript.gain for transcript, _ in best), default=0.0):
             best = found
         if gain > MIN_ROW_GAIN:
             break
