@@ -25,6 +25,8 @@ MIN_SIDE = 100  # pixels of the shorter side: 13 lines of type have more
 BLOCK = 4  # pixels a side that are averaged to find the paper
 TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
 PAPER = 80  # percentile of the darkness that is still paper: type covers a tenth of a page
+MAX_TALL = 0.08  # height of connected ink of type, as a fraction of the page: lines may touch
+MAX_WIDE = 0.3  # its width: bad copies join the letters of a word
 GRAIN = 0.08  # darkness that is never ink
 SURROUND = 0.8  # brightness of what surrounds a page, relative to the page, at most
 MIN_STEP = 0.08  # logarithm of brightness across the edge of a page; the hardest shadow has 0.04
@@ -248,9 +250,22 @@ class Points(NamedTuple):
 
 
 def points_of(ink: Image) -> Points:
-    """Return the inked places of a page without single specks, 150,000 at most."""
+    """Return the inked places of a page without single specks, 150,000 at most.
+
+    Connected ink that is too large for type is left out: edges of the paper, bands, ruled lines.
+    """
     around = ndimage.uniform_filter(ink, 3)
-    y, x = np.nonzero((ink > 0.4) & (around > 0.2))
+    dark = (ink > 0.4) & (around > 0.2)
+    labels, _ = ndimage.label(dark[::2, ::2], np.ones((3, 3)))
+    rows, columns = (length / 2 for length in ink.shape)
+    for number, box in enumerate(ndimage.find_objects(labels), 1):
+        tall, wide = (part.stop - part.start for part in box)
+        if tall > MAX_TALL * rows or wide > MAX_WIDE * columns:
+            part = np.kron(labels[box] == number, np.ones((2, 2), bool))
+            top, left = 2 * box[0].start, 2 * box[1].start
+            window = dark[top : top + part.shape[0], left : left + part.shape[1]]
+            window &= ~part[: window.shape[0], : window.shape[1]]
+    y, x = np.nonzero(dark)
     # a fixed stride would fall into step with the rows, whole pixels with the pitch
     random = np.random.default_rng(1988)
     if len(x) > 150_000:

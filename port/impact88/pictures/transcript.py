@@ -44,7 +44,10 @@ MIN_DISTANCE = (
 MAX_FOREIGN = 8.0  # distance of a cell from its character's mean, in the page's usual distances
 MIN_MEMBERS = 3  # cells of which a mean is made that a cell is found to be like
 MIN_GAIN = 0.5  # gain of a row for each of its characters from which a line is taken for it
+MIN_DENSITY = 0.7  # gain of a row for each of its inked cells: a line of other text has 0.4
+ORDER_COST = 3.0  # of a row out of the program's order, in gain
 MIN_INKED = 50  # cells with type of a page
+MIN_USUAL = 0.05  # usual distance of cells from their means, as a fraction of the mean's energy
 MAX_OFF = 0.1  # fraction of the cells that contradict a page, from which it is of another scene
 MAX_UNLIKE = 0.45  # distance of type from its mean, as a fraction of the mean's energy
 ROUNDS = 3  # readings by the page's own means
@@ -270,21 +273,17 @@ class Reader:
             gains[(first < start) | (last > stop), row] = -np.inf
         sizes = np.array([max(MIN_SIZE, len(WILD.sub("", text))) for text in texts])
         gains[gains < MIN_GAIN * sizes] = -np.inf
-        # rows that are alike keep their order, and no more lines are joined than needed
-        order = np.abs(np.linspace(0, 1, len(gains))[:, None] - np.linspace(0, 1, len(texts)))
-        ranks = gains - 0.5 * order - (last - first)[:, None]
         placements: list[Placement] = []
-        for unit in _best_units(ranks.max(axis=1), first, last):
-            row = int(ranks[unit].argmax())
+        for unit, row in _best_units(gains, first, last):
             part = align({name: cost[[unit]] for name, cost in costs.items()}, [texts[row]])
             inside = flat[unit] >= 0
             path = part.paths[0, inside]
             states = [part.states[state] for state in path]
-            placements.append(
-                Placement(
-                    row, float(gains[unit, row]), flat[unit][inside], states, part.sources[path]
-                )
-            )
+            cells = flat[unit][inside]
+            is_row = self.inked[cells] & np.array([state != BESIDE for state in states])
+            if gains[unit, row] > MIN_DENSITY * is_row.sum():
+                gain = float(gains[unit, row])
+                placements.append(Placement(row, gain, cells, states, part.sources[path]))
         return placements
 
     def name_labels(self, placements: Sequence[Placement]) -> bool:
@@ -432,57 +431,63 @@ class Reader:
         return np.where(is_known, self.predicted, self.names)
 
     def measure(self) -> list[Cell]:
-        """Return the predicted cells with what each is like."""
+        """Return the predicted cells with what each is like.
+
+        Cells that differ are left out of the means, and all are measured again.
+        """
+        cells = self._measure(np.zeros(len(self.predicted), bool))
+        dropped = np.zeros(len(self.predicted), bool)
+        for cell in cells:
+            if cell.state == "differs" and cell.members > 1:
+                dropped[cell.line * self.shape[1] + cell.cell] = True
+        return self._measure(dropped) if dropped.any() else cells
+
+    def _measure(self, dropped: NDArray[np.bool_]) -> list[Cell]:
+        """Return the predicted cells, measured by means without some cells."""
         asked = np.flatnonzero(self.predicted != "")
         sample = self.cells.at(asked)
         want = self.predicted[asked]
-        face = typeface_of(sample, want.tolist())
-        blank = len(face.names)
+        lost = {*want.tolist()} - {*want[~dropped[asked]].tolist()}
+        is_member = ~dropped[asked] | np.isin(want, [*lost])
+        face = typeface_of(sample, np.where(is_member, want, "").tolist())
         kinds = [*face.names, BLANK]
-        counts = np.r_[face.counts, 99]
-        to = distances(sample, face.means)
-        own = np.where(face.owners < 0, blank, face.owners)
-        to = self._leave_one_out(sample, face, to)
+        own = np.array([kinds.index(name) for name in want])
+        blank = len(face.names)
+        counts = np.r_[face.counts, len(want)]
+        to = self._leave_one_out(sample, face, distances(sample, face.means))
         to = np.column_stack([to, sample.norms.min(axis=1)])
         energy = np.r_[face.energy, 1e-3]
-        between = face.between()
         to_own = to[np.arange(len(asked)), own]
-        is_usual = (own != blank) & (counts[own] > 1)
-        usual = max(float(np.median((to_own / energy[own])[is_usual])), 0.05)
+        is_usual = (own != blank) & (counts[own] > 1) & is_member
+        usual = max(float(np.median((to_own / energy[own])[is_usual])), MIN_USUAL)
         is_alone = (own != blank) & (counts[own] < 2)
         to_own[is_alone] = 2 * usual * energy[own[is_alone]]
+        steps = to_own[:, None] - to
+        between = face.between()
+        margins = steps / np.where(steps > 0, between[:, own].T, between[own])
+        on_blank = own == blank  # how much of a character's energy is there
+        margins[on_blank] = (to[on_blank, blank][:, None] - to[on_blank]) / energy
+        in_number = self.fields[asked] != ""
         is_numeric = np.array([kind in IN_NUMBERS + BLANK for kind in kinds])
-        cells = []
-        for i, at in enumerate(asked.tolist()):
-            in_number = self.fields[at] != ""
-            others = np.flatnonzero(
-                (is_numeric | (not in_number)) & (np.arange(blank + 1) != own[i])
+        margins[in_number[:, None] & ~is_numeric] = -np.inf
+        margins[np.arange(len(asked)), own] = -np.inf
+        best = margins.argmax(axis=1)
+        nearest = margins.max(axis=1)
+        nearest[on_blank & ~self.inked[asked]] = -1.0
+        far = np.where(on_blank, 0.0, to_own / energy[own] / usual)
+        return [
+            Cell(
+                *divmod(at, self.shape[1]),
+                predicted=str(want[i]),
+                name=str(self.fields[at]),
+                other=kinds[best[i]],
+                margin=float(nearest[i]),
+                distance=float(far[i]),
+                members=int(counts[own[i]]),
+                other_members=int(counts[best[i]]),
             )
-            if own[i] == blank:  # how much of a character's energy is there
-                best = others[np.argmin(to[i, others])]
-                margin = (to[i, blank] - to[i, best]) / energy[best] if self.inked[at] else -1.0
-                far = 0.0
-            else:
-                steps = to_own[i] - to[i, others]
-                scales = np.where(steps > 0, between[others, own[i]], between[own[i], others])
-                best = others[np.argmax(steps / scales)]
-                margin = (steps / scales).max()
-                far = to_own[i] / energy[own[i]] / usual
-            line, cell = divmod(at, self.shape[1])
-            cells.append(
-                Cell(
-                    line,
-                    cell,
-                    str(want[i]),
-                    str(self.fields[at]),
-                    kinds[best],
-                    float(margin),
-                    float(far),
-                    int(counts[own[i]]),
-                    int(counts[best]),
-                )
-            )
-        return cells
+            for i, at in enumerate(asked.tolist())
+        ]
 
     def final_text(self, cells: Sequence[Cell]) -> str:
         """Return the text by the measured cells, with `UNREAD` where they leave a doubt."""
@@ -503,8 +508,8 @@ def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     cells = np.arange(lines * count).reshape(lines, count)
     units = [*cells]
     margin = _left_margin(inked)
-    is_narrow = inked[:, margin + SCREEN + 1 :].sum() < SCREEN
-    if not is_narrow:
+    beyond = inked[:, margin + SCREEN :].sum(axis=1)
+    if (beyond >= MIN_MEMBERS).sum() > 1:  # one line may have a mark
         return units
     screen = cells[:, margin : margin + SCREEN]
     for joined in (2, 3):
@@ -512,18 +517,30 @@ def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     return units
 
 
-def _best_units(ranks: Floats, first: NDArray[np.intp], last: NDArray[np.intp]) -> list[int]:
-    """Return the units with the largest sum of ranks, no line in two of them."""
-    best = [0.0]
-    chosen: list[list[int]] = [[]]
+def _best_units(
+    gains: Floats, first: NDArray[np.intp], last: NDArray[np.intp]
+) -> list[tuple[int, int]]:
+    """Return the units and their rows with the largest sum of gains, no line in two units.
+
+    A row that does not follow the one before it on the program's page costs `ORDER_COST`; so does
+    each line that is joined to another.
+    """
+    count = gains.shape[1]
+    follows = np.arange(count)[:, None] < np.arange(count)  # row before, row
+    step = np.where(follows, 0.0, ORDER_COST)
+    best = [np.zeros(count)]  # by line: the largest sum, by the last row that was placed
+    chosen: list[list[list[tuple[int, int]]]] = [[[] for _ in range(count)]]
     for line in range(int(last.max()) + 1):
-        best.append(best[line])
-        chosen.append(chosen[line])
+        totals, paths = best[line].copy(), [*chosen[line]]
         for unit in np.flatnonzero(last == line).tolist():
-            total = best[first[unit]] + ranks[unit]
-            if total > best[-1]:
-                best[-1], chosen[-1] = total, [*chosen[first[unit]], unit]
-    return chosen[-1]
+            before = best[first[unit]][:, None] - step
+            sums = before.max(axis=0) + gains[unit] - ORDER_COST * (line - first[unit])
+            for row in np.flatnonzero(sums > totals).tolist():
+                totals[row] = sums[row]
+                paths[row] = [*chosen[first[unit]][int(before[:, row].argmax())], (unit, row)]
+        best.append(totals)
+        chosen.append(paths)
+    return chosen[-1][int(best[-1].argmax())]
 
 
 def _left_margin(inked: NDArray[np.bool_]) -> int:

@@ -18,7 +18,6 @@ from .residue import marks_of
 from .transcript import Cell, Transcript, transcribe
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
-MAX_DOUBTFUL = 12  # cells of numbers in doubt, beyond which nothing follows from the others
 MIN_ROW_GAIN = (
     0.8  # gain of the program's rows for a cell, of a page that is upright: upside down 0.4
 )
@@ -191,24 +190,36 @@ def _blanked(match: re.Match[str]) -> str:
 
 
 def _gated(result: Verification, transcript: Transcript, marks: Sequence[Floats]) -> Verdict:
-    """Return the verdict on a picture: that of its text, held back by cells and marks."""
+    """Return the verdict on a picture: that of its text, held back by cells and marks.
+
+    A page differs only if the measured cells are those of the same predicted page, each cell that
+    differs belongs to a finding, and no cell of a number is in doubt.
+    """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
     doubts = [cell for cell in cells if cell.state == "doubt"]
-    in_numbers = sum(cell.name != "" for cell in doubts)
     differing = [cell for cell in cells if cell.state == "differs"]
-    verdict = result.verdict
-    if not cells or in_numbers > MAX_DOUBTFUL:
+    has_doubts = any(cell.name for cell in doubts)
+    is_measured = _numbers_of(result) in map(_numbers_of, transcript.sheets)
+    if not cells or not is_measured:
         return Verdict.INCOMPLETE
+    verdict = result.verdict
     if verdict is Verdict.DIFFERS:
-        is_few = len(differing) <= MAX_DIFFERING or (result.explanation and in_numbers < 3)
-        return verdict if is_few else Verdict.INCOMPLETE
+        adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
+        is_odd = any(cell.name and cell.name not in adverse for cell in differing)
+        is_few = len(differing) <= MAX_DIFFERING or bool(result.explanation)
+        return verdict if is_few and not is_odd and not has_doubts else Verdict.INCOMPLETE
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
-        if in_numbers or any(cell.name for cell in differing):
+        if has_doubts or any(cell.name for cell in differing):
             return Verdict.INCOMPLETE
         if doubts or differing or marks:
             return Verdict.AS_READ
     return verdict
+
+
+def _numbers_of(result: Verification) -> dict[str, str]:
+    """Return the numbers that the program prints for a printout's scene."""
+    return {name: number.printed for name, number in result.numbers.items()}
 
 
 def _located(
