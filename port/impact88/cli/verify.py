@@ -20,14 +20,12 @@ exit status: 0 identical; 1 any other verdict; 2 a file that cannot be read"""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
 from glob import glob
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
 from ..errors import UserError, note
 from ..files import display_name, read_bytes
-from ..layout import paragraph
 from . import options
 from .output import print_json
 
@@ -100,34 +98,28 @@ def _verified(
 ) -> Iterator[Exhibit]:
     """Print and yield the printouts of a file."""
     from ..printouts import verify, words
-    from ..report.exhibits import PICTURE_STARTS, examine, of_text
+    from ..report.exhibits import PICTURE_STARTS, of_picture, of_text, read_picture
 
+    digest = sha256(data).hexdigest()
     if data.startswith(PICTURE_STARTS):
-        for exhibit in examine(name, data):
+        if args.listing:
+            raise UserError("--listing goes with texts, not with pictures", name)
+        for number, page in enumerate(read_picture(name, data, given), 1):
             if args.json:
-                print_json("verify", {**asdict(exhibit), "picture": None})
+                record = words.record(page.verification, name, number, digest)
+                print_json("verify", {**record, **page.places()})
             else:
-                print("\n".join([*_picture_lines(exhibit, args.brief), ""]))
-            yield exhibit
+                lines = words.write(page.verification, name, number, args.brief)
+                print("\n".join([*lines, *(f"  {remark}" for remark in page.remarks), ""]))
+            yield of_picture(page, f"{name}, printout {number}", digest)
         return
     try:
         results = verify(data, given, args.listing)
     except UserError as error:
         raise UserError(str(error).removeprefix("text: "), name) from None
-    digest = sha256(data).hexdigest()
     for number, result in enumerate(results, 1):
         if args.json:
             print_json("verify", words.record(result, name, number, digest))
         else:
             print("\n".join([*words.write(result, name, number, args.brief), ""]))
         yield of_text(result, f"{name}, printout {number}", digest)
-
-
-def _picture_lines(exhibit: Exhibit, is_brief: bool) -> Iterator[str]:
-    """Yield the lines of a printout that was read from a picture."""
-    yield f"{exhibit.source}: {exhibit.verdict}"
-    for heading, sentences in exhibit.sections.items():
-        if not heading or not is_brief:
-            yield from [f"  {heading}"] if heading and sentences else []
-            for sentence in sentences:
-                yield from paragraph(sentence, "", 4)

@@ -53,7 +53,7 @@ class Exhibit(NamedTuple):
     outlines: tuple[Outline, ...]
 
 
-def exhibit(result: PictureVerification) -> Exhibit:
+def draw_page(result: PictureVerification) -> Exhibit:
     """Return the picture of a printout's page with its findings outlined.
 
     Parameters

@@ -12,6 +12,7 @@ from scipy import ndimage
 from ..errors import UserError
 from ..printouts import VERDICTS, Verdict, Verification, judge
 from ..printouts.page import REPLIES
+from .cells import BLANK
 from .grid import STEEP, grids_of, is_on_side, skew_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
 from .residue import marks_of
@@ -61,6 +62,17 @@ class PictureVerification:
     def verdict(self) -> Verdict:
         """The verdict on the picture."""
         return self.verification.verdict
+
+    def places(self) -> dict[str, object]:
+        """Return the page and the places of findings, cells in question and marks, for JSON."""
+        return {
+            "page": self.page,
+            "boxes": [box.round(1).tolist() for box in self.boxes],
+            "cells": [
+                {**cell._asdict(), "box": box.round(1).tolist()} for cell, box in self.doubts
+            ],
+            "marks": [mark.round(1).tolist() for mark in self.marks],
+        }
 
 
 def verify_picture(
@@ -112,10 +124,28 @@ def verify_page(
     page: Page, scene: Mapping[str, str] | None = None
 ) -> Iterator[PictureVerification]:
     """Yield the verification of each printout on a page."""
+    layer = judge(page.text) if page.text.strip() else []
     for transcript, turned in _transcripts(page, scene):
         marks = marks_of(transcript.grid, transcript.filled())
         for verification in _judged(transcript, marks, scene):
-            yield _located(page, transcript, turned, verification, marks)
+            result = _located(page, transcript, turned, verification, marks)
+            yield _compare_layer(result, layer.pop(0)) if layer else result
+
+
+def _compare_layer(result: PictureVerification, layer: Verification) -> PictureVerification:
+    """Return a verification, open where the text layer of a PDF has another number."""
+    numbers = result.verification.numbers
+    others = [
+        f"{name} {number.read} for {numbers[name].printed}"
+        for name, number in layer.numbers.items()
+        if number.read and name in numbers and number.read != numbers[name].printed
+    ]
+    if not others:
+        return result
+    remark = "the text layer of the PDF does not agree with its picture: " + ", ".join(others)
+    verdict = result.verdict if result.verdict is Verdict.DIFFERS else Verdict.INCOMPLETE
+    verification = replace(result.verification, verdict=verdict)
+    return replace(result, verification=verification, remarks=(*result.remarks, remark))
 
 
 @dataclass(frozen=True)
@@ -217,6 +247,21 @@ def _gated(result: Verification, transcript: Transcript, marks: Sequence[Floats]
     return verdict
 
 
+def _remarks(
+    transcript: Transcript, verification: Verification, marks: Sequence[Floats]
+) -> Iterator[str]:
+    """Yield sentences on cells in doubt and on marks."""
+    names = {finding.name for finding in verification.findings}
+    for cell in transcript.cells:
+        if cell.state == "holds" or (cell.name and cell.name in names):
+            continue
+        like = "blank paper" if cell.other == BLANK else repr(cell.other)
+        place = f"line {cell.line + 1}, column {cell.cell + 1}"
+        yield f"{place}: {cell.name or 'a label'}, {cell.predicted!r} is more like {like}"
+    if marks:
+        yield f"ink that the program does not print, at {len(marks)} places: pen, stamp or specks"
+
+
 def _numbers_of(result: Verification) -> dict[str, str]:
     """Return the numbers that the program prints for a printout's scene."""
     return {name: number.printed for name, number in result.numbers.items()}
@@ -251,7 +296,7 @@ def _located(
         tuple(boxes),
         tuple(doubts),
         tuple(page.scale * turn.back(mark) for mark in marks),
-        (),
+        tuple(_remarks(transcript, verification, marks)),
         page.grey,
         page.scale,
     )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import UserError
 from ..printouts import VERDICTS, Kind, Verdict, Verification, judge, words
 from ..printouts.sources import read_text
+
+if TYPE_CHECKING:
+    from ..pictures.verdict import PictureVerification
 
 PICTURE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"%PDF-")
 """First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
@@ -157,57 +160,53 @@ def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
 
 
 def _examine_picture(name: str, data: bytes) -> list[Exhibit]:
-    """Verify every printout of a picture, by release 0.3's reader."""
-    from ..printouts.reporting.examination import examine as examine_file
-
-    examination = examine_file(name, data=data)
-    if examination.error:
-        raise UserError(examination.error)
-    return [_of_old(result, name) for result in examination.results]
-
-
-def _of_old(result: Any, name: str) -> Exhibit:
-    """Return the exhibit of a verification by release 0.3's reader, which still reads pictures."""
-    from ..printouts.reporting.verification import MEANINGS, TITLES, sections, summary
-
-    text = result.text[result.start : result.stop] if result.stop else result.text
-    places = sorted(
-        (check.start - result.start, check.stop - result.start, check)
-        for check in result.fields
-        if check.same is False and check.start is not None
-    )
-    marks = tuple(
-        Mark(start, stop, DIFFERS, f"the program prints {check.recomputed}")
-        for start, stop, check in places
-    )
-    return Exhibit(
-        f"{name}, printout {result.number}",
-        TITLES[result.verdict],
-        MEANINGS[result.verdict],
-        result.verdict.name == "DIFFERS",
-        {"": tuple(summary(result)), **{h: tuple(s) for h, s in sections(result).items()}},
-        text,
-        marks,
-        _picture(result.exhibit()) if result.exhibit else None,
-        result.sha256 or "",
-    )
-
-
-def _picture(exhibit: dict[str, Any]) -> Picture:
-    """Return the picture of a page with its cells in question and foreign ink outlined."""
-    looks = {"differs": DIFFERS, "foreign": DIFFERS}
-    outlines = [
-        (cell["corners"], looks.get(cell["state"], DOUBT), f"{cell['name']}: {cell['predicted']}")
-        for cell in exhibit["cells"]
-        if cell["state"] != "holds"
+    """Verify every printout of a picture or PDF."""
+    results = read_picture(name, data)
+    digest = sha256(data).hexdigest()
+    return [
+        of_picture(result, f"{name}, printout {k}", digest) for k, result in enumerate(results, 1)
     ]
-    outlines += [(mark["corners"], FOREIGN, str(mark["kind"])) for mark in exhibit["marks"]]
-    return Picture(
-        exhibit["page"],
-        exhibit["width"],
-        exhibit["height"],
-        tuple(
-            Outline(" ".join(f"{x:.0f},{y:.0f}" for x, y in corners), look, note)
-            for corners, look, note in outlines
-        ),
+
+
+def read_picture(
+    name: str, data: bytes, scene: Mapping[str, str] | None = None
+) -> list[PictureVerification]:
+    """Return the printouts of a picture or PDF.
+
+    Raises
+    ------
+    UserError
+        Also if the extra is not installed.
+    """
+    try:
+        from ..pictures import verify_picture
+    except ImportError as error:
+        raise UserError(
+            f"pictures need {error.name}; pip install 'impact88[pictures]'", name
+        ) from None
+    return verify_picture(data, name, scene=scene)
+
+
+def of_picture(result: PictureVerification, source: str, digest: str = "") -> Exhibit:
+    """Return the exhibit of a verified picture.
+
+    Parameters
+    ----------
+    result : PictureVerification
+        The verification.
+    source : str
+        The file, and which printout of it.
+    digest : str, optional
+        SHA-256 of the file.
+    """
+    from ..pictures.exhibit import draw_page
+
+    page = draw_page(result)
+    outlines = tuple(
+        Outline(" ".join(f"{x:.0f},{y:.0f}" for x, y in corners), look, note)
+        for corners, look, note in page.outlines
     )
+    text = of_text(result.verification, source, digest)
+    sections = {**text.sections, "the picture": result.remarks} if result.remarks else text.sections
+    picture = Picture(page.uri, page.width, page.height, outlines)
+    return replace(text, sections=sections, picture=picture)

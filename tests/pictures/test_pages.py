@@ -1,0 +1,96 @@
+"""Pages with a known text: genuine ones are never called different, altered ones never pass."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from typedpages import CELL, LEADING, draw, encode, scan
+
+import impact88
+from impact88.pictures import PictureVerification, verify_picture
+from impact88.pictures.exhibit import draw_page
+from impact88.pictures.residue import MIN_AREA
+from impact88.printouts import Verdict
+
+MARGIN = 60
+PAGE = "\n".join(line for line in impact88.run(impact88.sample(1)).page.split("\n") if line.strip())
+SETTLED = {Verdict.IDENTICAL, Verdict.AS_READ}
+
+
+def read(grey: np.ndarray) -> PictureVerification:
+    """Return the one printout of a page."""
+    (result,) = verify_picture(encode(grey))
+    return result
+
+
+def place(text: str) -> tuple[int, int]:
+    """Return the row and column of a text on the page."""
+    before = PAGE[: PAGE.index(text)]
+    return before.count("\n"), len(before) - before.rfind("\n") - 1
+
+
+def corner(text: str) -> tuple[int, int]:
+    """Return the top left pixel of a text on the drawn page."""
+    row, column = place(text)
+    return MARGIN + row * LEADING, MARGIN + column * CELL[1]
+
+
+@pytest.fixture(scope="module")
+def genuine() -> PictureVerification:
+    """The page without alterations."""
+    return read(scan(draw(PAGE, 3), 0.8))
+
+
+def test_genuine_page_is_identical(genuine: PictureVerification) -> None:
+    assert genuine.verdict is Verdict.IDENTICAL
+    assert dict(genuine.verification.scene) == dict(impact88.sample(1))
+    assert not genuine.marks
+    assert not genuine.remarks
+
+
+@pytest.mark.parametrize("quarters", [1, 2])
+def test_page_on_its_side_or_head(quarters: int) -> None:
+    assert read(np.rot90(scan(draw(PAGE, 11)), quarters)).verdict in SETTLED
+
+
+def test_altered_digit_differs_at_its_place() -> None:
+    altered = PAGE.replace("VAX= -15", "VAX= -16")
+    assert altered != PAGE
+    result = read(scan(draw(altered, 0)))
+    assert result.verdict is Verdict.DIFFERS
+    (finding,) = result.verification.findings
+    assert finding.name == "VAX"
+    (box,) = result.boxes
+    top, left = corner("-15.")
+    assert abs(box[0] - [left, top]).max() < 2 * CELL[1]
+    page = draw_page(result)
+    assert "differs" in {outline.look for outline in page.outlines}
+    assert page.uri.startswith("data:image/png;base64,")
+
+
+def test_erased_digit_is_open() -> None:
+    top, left = corner("15.669")
+    page = draw(PAGE, 0)
+    page[top : top + CELL[0], left : left + CELL[1]] = 255
+    assert read(scan(page)).verdict is Verdict.INCOMPLETE
+
+
+@pytest.mark.parametrize(("factor", "verdict"), [(0.6, Verdict.IDENTICAL), (1.8, Verdict.AS_READ)])
+def test_mark_bars_identical_from_the_area_of_a_full_stop(factor: float, verdict: Verdict) -> None:
+    page = scan(draw(PAGE, 0), blur=0.3, noise=2)
+    side = (factor * MIN_AREA) ** 0.5 * CELL[1]
+    size = round(side)
+    page[-30 : -30 + size, 700 : 700 + size] = 0
+    result = read(page)
+    assert result.verdict is verdict
+    assert len(result.marks) == (verdict is Verdict.AS_READ)
+
+
+def test_text_beside_the_page_is_reported() -> None:
+    result = read(scan(draw(PAGE.replace("\nDA=", " 12345678 90\nDA="), 0)))
+    assert result.verdict not in (Verdict.IDENTICAL, Verdict.DIFFERS)
+
+
+def test_rows_broken_by_a_narrow_screen() -> None:
+    rows = [line[k : k + 40] for line in PAGE.split("\n") for k in range(0, len(line), 40)]
+    assert read(scan(draw("\n".join(rows), 1))).verdict in SETTLED
