@@ -12,6 +12,7 @@ from impact88.pictures.align import BESIDE, NUMBER, OPTIONAL, align, costs_of
 from impact88.pictures.cells import CHARACTERS
 from impact88.pictures.transcript import Cell
 
+TEXT = "\n".join(f"{k * 'A'} MA= {7**k} MB= {13**k}" for k in range(8))
 CELL = Cell(0, 0, "3", "VAX", "8", 1.0, 5.0, 9, 9)
 
 
@@ -87,7 +88,7 @@ def test_grid_moves_its_lines() -> None:
     from impact88.pictures.grid import grids_of
     from impact88.pictures.picture import ink_of, points_of
 
-    ink = ink_of(draw("\n".join(["MA= 12.5 MB= 33.75"] * 8), margin=120).astype(np.float32))
+    ink = ink_of(draw(TEXT, margin=120).astype(np.float32))
     (grid,) = grids_of(ink, points_of(ink))
     assert grid.pitch == pytest.approx(16, abs=0.3)
     assert len(grid.middles) == 8

@@ -45,6 +45,7 @@ MAX_FOREIGN = 8.0  # distance of a cell from its character's mean, in the page's
 MIN_MEMBERS = 3  # cells of which a mean is made that a cell is found to be like
 MIN_GAIN = 0.5  # gain of a row for each of its characters from which a line is taken for it
 MIN_DENSITY = 0.7  # gain of a row for each of its inked cells: a line of other text has 0.4
+JOIN_COST = 0.5  # of a line joined to the one before it, in gain
 ORDER_COST = 3.0  # of a row out of the program's order, in gain
 MIN_INKED = 50  # cells with type of a page
 MIN_USUAL = 0.05  # usual distance of cells from their means, as a fraction of the mean's energy
@@ -522,8 +523,8 @@ def _best_units(
 ) -> list[tuple[int, int]]:
     """Return the units and their rows with the largest sum of gains, no line in two units.
 
-    A row that does not follow the one before it on the program's page costs `ORDER_COST`; so does
-    each line that is joined to another.
+    A row that does not follow the one before it on the program's page costs `ORDER_COST`,
+    each line that is joined to another `JOIN_COST`.
     """
     count = gains.shape[1]
     follows = np.arange(count)[:, None] < np.arange(count)  # row before, row
@@ -534,7 +535,7 @@ def _best_units(
         totals, paths = best[line].copy(), [*chosen[line]]
         for unit in np.flatnonzero(last == line).tolist():
             before = best[first[unit]][:, None] - step
-            sums = before.max(axis=0) + gains[unit] - ORDER_COST * (line - first[unit])
+            sums = before.max(axis=0) + gains[unit] - JOIN_COST * (line - first[unit])
             for row in np.flatnonzero(sums > totals).tolist():
                 totals[row] = sums[row]
                 paths[row] = [*chosen[first[unit]][int(before[:, row].argmax())], (unit, row)]
