@@ -70,7 +70,7 @@ def costs_of(odds: Floats, unlike: Floats, numeric: str = NUMERIC) -> dict[str, 
     }
     costs[BLANK] = costs[OPTIONAL] = is_blank
     costs[BESIDE] = np.minimum(is_blank, FOREIGN_COST)
-    costs[NUMBER] = NUMBER_COST + np.min([costs[c] for c in numeric + "E"], axis=0)
+    costs[NUMBER] = NUMBER_COST + np.min([costs[c] for c in numeric + "E+"], axis=0)
     costs[REPLY] = np.minimum(costs[NUMBER], np.minimum(NUMBER_COST + costs[","], is_blank))
     return costs
 

@@ -22,7 +22,7 @@ Vectors = NDArray[np.float32]
 BLANK = " "
 DIGITS = "0123456789"
 NUMERIC = DIGITS + ".-"
-CHARACTERS = NUMERIC + "ABCDEFGHIKLMNOPRSTUVWXYabxy=()%*:,?"
+CHARACTERS = NUMERIC + "ABCDEFGHIKLMNOPRSTUVWXYabxy=()%*:,?+"
 """Characters of the printed page of which `known_glyphs` has pictures."""
 CAPITALS = (4, 20)  # rows of a known glyph between which capitals are
 SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]

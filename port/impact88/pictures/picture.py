@@ -195,9 +195,10 @@ def _is_negative(small: Image, size: int) -> bool:
     """Return True for a picture whose strokes are lighter than what surrounds them."""
     if np.median(small) > 110:
         return False
-    dark = ndimage.grey_closing(small, (size, size)) - small
-    light = small - ndimage.grey_opening(small, (size, size))
-    return bool((light > 40).sum() > (dark > 40).sum())
+    around = ndimage.uniform_filter(small, size)
+    light = (small - around > 25) & (around < 110)
+    dark = (around - small > 25) & (around >= 110)
+    return bool(light.sum() > 2 * dark.sum())
 
 
 def _page_mask(paper: Image) -> NDArray[np.bool_]:

@@ -56,7 +56,7 @@ SCREEN = 40  # columns of an Apple's screen
 MIN_SIZE = 5  # characters that a row is taken to have at least, for `MIN_GAIN`
 UNREAD = "?"
 WILD = re.compile(f"[{NUMBER}{REPLY}{OPTIONAL} ]")
-IN_NUMBERS = NUMERIC + "E"
+IN_NUMBERS = NUMERIC + "E+"
 TEMPLATES = [
     re.sub(
         "(?<=[:,])",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from .residue import marks_of
 from .transcript import Cell, Transcript, transcribe
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
+MAX_DROPPED = 2  # cells of numbers without their ink on a page that differs
 MIN_ROW_GAIN = (
     0.8  # gain of the program's rows for a cell, of a page that is upright: upside down 0.4
 )
@@ -223,28 +224,37 @@ def _gated(result: Verification, transcript: Transcript, marks: Sequence[Floats]
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
     A page differs only if the measured cells are those of the same predicted page, each cell that
-    differs belongs to a finding, and no cell of a number is in doubt.
+    differs belongs to a finding, and no cell of a number is in doubt, but for some dropped ink.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
     doubts = [cell for cell in cells if cell.state == "doubt"]
     differing = [cell for cell in cells if cell.state == "differs"]
-    has_doubts = any(cell.name for cell in doubts)
-    is_measured = _numbers_of(result) in map(_numbers_of, transcript.sheets)
-    if not cells or not is_measured:
+    in_doubt = [cell for cell in doubts if cell.name]
+    adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
+    if not cells or not any(_is_same_page(result, sheet, adverse) for sheet in transcript.sheets):
         return Verdict.INCOMPLETE
     verdict = result.verdict
     if verdict is Verdict.DIFFERS:
-        adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
         is_odd = any(cell.name and cell.name not in adverse for cell in differing)
+        is_odd |= any(cell.other != BLANK for cell in in_doubt) or len(in_doubt) > MAX_DROPPED
         is_few = len(differing) <= MAX_DIFFERING or bool(result.explanation)
-        return verdict if is_few and not is_odd and not has_doubts else Verdict.INCOMPLETE
+        return verdict if is_few and not is_odd else Verdict.INCOMPLETE
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
-        if has_doubts or any(cell.name for cell in differing):
+        if in_doubt or any(cell.name for cell in differing):
             return Verdict.INCOMPLETE
         if doubts or differing or marks:
             return Verdict.AS_READ
     return verdict
+
+
+def _is_same_page(result: Verification, sheet: Verification, adverse: Collection[str]) -> bool:
+    """Return True if the program prints the same numbers for two scenes, but those that differ."""
+    return result.numbers.keys() == sheet.numbers.keys() and all(
+        number.printed == sheet.numbers[name].printed
+        for name, number in result.numbers.items()
+        if name not in adverse
+    )
 
 
 def _remarks(
@@ -260,11 +270,6 @@ def _remarks(
         yield f"{place}: {cell.name or 'a label'}, {cell.predicted!r} is more like {like}"
     if marks:
         yield f"ink that the program does not print, at {len(marks)} places: pen, stamp or specks"
-
-
-def _numbers_of(result: Verification) -> dict[str, str]:
-    """Return the numbers that the program prints for a printout's scene."""
-    return {name: number.printed for name, number in result.numbers.items()}
 
 
 def _located(
