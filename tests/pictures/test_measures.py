@@ -94,6 +94,6 @@ def test_grid_moves_its_lines() -> None:
     assert len(grid.middles) == 8
     own = np.zeros_like(grid.own)
     own[2, 0] = 3.0
-    moved = replace(grid).moved(own)
+    moved = replace(grid).move_lines(own)
     assert moved.corners(2, 0)[0, 0] - grid.corners(2, 0)[0, 0] == pytest.approx(3, abs=0.1)
     assert moved.corners(3, 0)[0, 0] == grid.corners(3, 0)[0, 0]

@@ -126,7 +126,7 @@ class Grid:
         across = np.array([cell, last, last, cell], float)
         return np.stack(self.place(line, across, np.array([-half, -half, half, half])), axis=1)
 
-    def moved(self, own: Floats) -> Grid:
+    def move_lines(self, own: Floats) -> Grid:
         """Return the grid with lines moved by what is added to their own shifts."""
         return replace(self, own=self.own + own)
 

@@ -175,7 +175,7 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
     gain = sum(placed.gain for placed in rows) / int(reader.inked.sum())
     if not reader.name_labels(rows):
         return Transcript(grid, gain=gain)
-    grid = reader.registered()
+    grid = reader.register_lines()
     reader = Reader(grid, cells_of(grid))
     reader.name_labels(reader.place_rows(TEMPLATES))
     reader.name_numbers()
@@ -189,7 +189,7 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
         if not reader.predict(sheets):
             break
         transcript.sheets = sheets
-        reader.read(reader.trusted())
+        reader.read(reader.predicted_names())
         transcript.cells = reader.measure()
         transcript.text = reader.final_text(transcript.cells)
     return transcript
@@ -304,7 +304,7 @@ class Reader:
             self.names[chosen] = states[is_label & self.inked[placed.cells]]
         return bool(self.is_label.any())
 
-    def registered(self) -> Grid:
+    def register_lines(self) -> Grid:
         """Return the grid with each line moved onto the means of the page's labels and figures."""
         chosen = np.flatnonzero(self.is_label)
         face = typeface_of(self.cells.at(chosen), self.names[chosen].tolist())
@@ -321,7 +321,7 @@ class Reader:
                 if np.ptp(columns[at]) > 20:
                     rise, level = np.polyfit(columns[at], off, 1)
                 own[line, part : part + 2] = unit * level, unit * rise
-        return self.grid.moved(own)
+        return self.grid.move_lines(own)
 
     def name_numbers(self) -> None:
         """Give the cells of numbers their first names."""
@@ -423,7 +423,7 @@ class Reader:
                     self.predicted[near] = BLANK
                     self.fields[near] = self.fields[near] or names[column]
 
-    def trusted(self) -> NDArray[np.str_]:
+    def predicted_names(self) -> NDArray[np.str_]:
         """Return the names with those of the predicted page, unless many cells contradict it."""
         is_known = (self.predicted != "") & (self.predicted != BLANK) & self.inked
         is_off = is_known & (self.predicted != self.names)

@@ -128,8 +128,8 @@ def verify_page(
     layer = judge(page.text) if page.text.strip() else []
     for transcript, turned in _transcripts(page, scene):
         marks = marks_of(transcript.grid, transcript.filled())
-        for verification in _judged(transcript, marks, scene):
-            result = _located(page, transcript, turned, verification, marks)
+        for verification in _judge_transcript(transcript, marks, scene):
+            result = _locate_findings(page, transcript, turned, verification, marks)
             yield _compare_layer(result, layer.pop(0)) if layer else result
 
 
@@ -190,25 +190,25 @@ def _transcripts(page: Page, scene: Mapping[str, str] | None) -> list[tuple[Tran
         if abs(slope) > STEEP:
             turn = replace(turn, slope=slope)
             upright = turn.apply(ink)
-        found = [(transcribe(g, scene), turn) for g in grids_of(upright, points_of(upright))]
-        gain = max((transcript.gain for transcript, _ in found), default=0.0)
+        read = [(transcribe(g, scene), turn) for g in grids_of(upright, points_of(upright))]
+        gain = max((transcript.gain for transcript, _ in read), default=0.0)
         if gain > max((transcript.gain for transcript, _ in best), default=0.0):
-            best = found
+            best = read
         if gain > MIN_ROW_GAIN:
             break
     return best
 
 
-def _judged(
+def _judge_transcript(
     transcript: Transcript, marks: Sequence[Floats], scene: Mapping[str, str] | None
 ) -> Iterator[Verification]:
     """Yield the printouts of a transcript with the verdict on the picture."""
     results = judge(transcript.text, scene)
     if any(_is_reply_alone(result) for result in results):
         # a reply was typed by a person: it is not held against a page
-        results = judge(PROMPT.sub(_blanked, transcript.text), scene)
+        results = judge(PROMPT.sub(_blank_reply, transcript.text), scene)
     for result in results:
-        yield replace(result, verdict=_gated(result, transcript, marks))
+        yield replace(result, verdict=_gate_verdict(result, transcript, marks))
 
 
 def _is_reply_alone(result: Verification) -> bool:
@@ -216,11 +216,11 @@ def _is_reply_alone(result: Verification) -> bool:
     return bool(adverse) and any(finding.name in REPLIES for finding in adverse)
 
 
-def _blanked(match: re.Match[str]) -> str:
+def _blank_reply(match: re.Match[str]) -> str:
     return str(match[1]).ljust(len(match[0]))
 
 
-def _gated(result: Verification, transcript: Transcript, marks: Sequence[Floats]) -> Verdict:
+def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[Floats]) -> Verdict:
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
     A page differs only if the measured cells are those of the same predicted page, each cell that
@@ -272,7 +272,7 @@ def _remarks(
         yield f"ink that the program does not print, at {len(marks)} places: pen, stamp or specks"
 
 
-def _located(
+def _locate_findings(
     page: Page,
     transcript: Transcript,
     turn: _Turn,
