@@ -92,6 +92,12 @@ def test_text_beside_the_page_is_reported() -> None:
     assert result.verdict not in (Verdict.IDENTICAL, Verdict.DIFFERS)
 
 
+def test_text_below_the_page_bars_identical() -> None:
+    result = read(scan(draw(PAGE + "\nVAX IS 12.5", 0)))
+    assert result.verdict is Verdict.AS_READ
+    assert "other text" in result.remarks[-1]
+
+
 def test_rows_broken_by_a_narrow_screen() -> None:
     rows = [line[k : k + 40] for line in PAGE.split("\n") for k in range(0, len(line), 40)]
     assert read(scan(draw("\n".join(rows), 1))).verdict in SETTLED

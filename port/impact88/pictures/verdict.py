@@ -207,8 +207,15 @@ def _judge_transcript(
     if any(_is_reply_alone(result) for result in results):
         # a reply was typed by a person: it is not held against a page
         results = judge(PROMPT.sub(_blank_reply, transcript.text), scene)
+    outside = transcript.text
     for result in results:
-        yield replace(result, verdict=_gate_verdict(result, transcript, marks))
+        first, stop = result.span
+        outside = outside[:first] + BLANK * (stop - first) + outside[stop:]
+    for result in results:
+        verdict = _gate_verdict(result, transcript, marks)
+        if verdict is Verdict.IDENTICAL and outside.strip():  # other text on the sheet
+            verdict = Verdict.AS_READ
+        yield replace(result, verdict=verdict)
 
 
 def _is_reply_alone(result: Verification) -> bool:
@@ -268,6 +275,10 @@ def _remarks(
         like = "blank paper" if cell.other == BLANK else repr(cell.other)
         place = f"line {cell.line + 1}, column {cell.cell + 1}"
         yield f"{place}: {cell.name or 'a label'}, {cell.predicted!r} is more like {like}"
+    first, stop = verification.span
+    outside = transcript.text[:first] + transcript.text[stop:]
+    if len(transcript.sheets) < 2 and outside.strip():
+        yield f"other text on the sheet: {' '.join(outside.split())!r}"
     if marks:
         yield f"ink that the program does not print, at {len(marks)} places: pen, stamp or specks"
 
