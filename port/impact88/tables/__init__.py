@@ -1,1 +1,1 @@
-"""Tables of scenes: CSV and JSON Lines by the standard library, Parquet and Excel by polars."""
+"""Tables of scenes: read (`engine`), solved row by row (`solving`), swept (`sweeping`), written."""

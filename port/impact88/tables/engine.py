@@ -23,7 +23,6 @@ ENDINGS = {
     ".xlsx": "xlsx",
 }
 """Formats by the ending of a file's name."""
-FORMATS = ("csv", "jsonl", "parquet", "xlsx")
 _WRITERS: dict[str, Callable[[IO[bytes], Iterable[Mapping[str, Column]]], None]] = {
     "csv": textformats.write_csv,
     "jsonl": textformats.write_json,
