@@ -157,6 +157,7 @@ def test_lost_characters_accuse_only_the_number_that_lost_them(width: int) -> No
     ("old", "new"),
     [
         (" E= 5E-03", " E-03"),
+        (" E= 5E-03", " E= -03"),
         ("XB= 14.51 YB=", "XB= 14"),
         ("VAY= 3.449 (", "VAY= 3("),
         ("GA\n -19.8", "19.8"),
@@ -205,7 +206,8 @@ def test_rows_in_each_others_place_are_named() -> None:
 
 
 @pytest.mark.parametrize(
-    ("label", "other"), [("MB", "MA"), ("IB", "IA"), ("VX", "VAX"), ("YB", "YA"), ("EM", "MU")]
+    ("label", "other"),
+    [("MB", "MA"), ("IB", "IA"), ("VX", "VAX"), ("YB", "YA"), ("EM", "MU"), ("(XA", "(YB")],
 )
 def test_another_label_differs(label: str, other: str) -> None:
     verification = single(BODY.replace(f"{label}=", f"{other}=", 1))

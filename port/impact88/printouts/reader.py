@@ -37,6 +37,8 @@ OWNED = re.compile(
     r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:])"
 )
 """A number in one piece behind a label."""
+CUT = re.compile(r"^-?0[0-9]|\.$")
+"""Ends of a number that nobody prints or types."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
@@ -95,7 +97,7 @@ class Slot:
     @property
     def is_clean(self) -> bool:
         """True for a number in one piece behind an exact label."""
-        is_number = PRINTED.fullmatch(as_printed(self.text)) and self.text[-1:] != "."
+        is_number = PRINTED.fullmatch(as_printed(self.text)) and not CUT.search(self.text)
         return self.label == "exact" and not self.is_torn and bool(is_number)
 
 

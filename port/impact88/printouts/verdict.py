@@ -395,7 +395,8 @@ class Comparison:
             words[-1].cells.append(j)
             if j in self.reading.other_labels:
                 words[-1].glyphs = [*self.reading.other_labels[j]]
-                words[-1].is_whole = words[-1].glyphs[0].gap > 0
+                first = words[-1].glyphs[0]
+                words[-1].is_whole = first.gap > 0 or self.reading.text[first.offset - 1] == "("
             elif j in self.reading.chars and words[-1].cells[0] not in self.reading.other_labels:
                 words[-1].glyphs.append(self.reading.chars[j])
                 words[-1].is_whole |= words[-1].glyphs[0].gap > 0
