@@ -14,7 +14,7 @@ from impact88.comparison import spellings
 from impact88.comparison.agreement import COMPARED, elimination_bounds, reference
 from impact88.comparison.evaluation import Program
 from impact88.comparison.kit import frozen_vectors
-from impact88.comparison.numbers import units
+from impact88.comparison.numbers import numbers, units
 from impact88.comparison.spellings import COLUMNS, VELOCITIES
 
 VECTORS = [vector for vector in frozen_vectors() if vector["class"] != "failure"]
@@ -125,11 +125,19 @@ class TestDigits:
         assert found["VBX"].tolist() == [100.0]
 
     def test_doubles_are_exact(self) -> None:
-        assert not units({"VAX": [1.0, 2 / 3]})["VAX"].any()
+        assert units({"VAX": [1.0, 2 / 3]})["VAX"].max() <= 1e-16
+
+    def test_exponents_of_fortran_are_numbers(self) -> None:
+        assert numbers(["1.25D+01", "-2d0", ""])[:2].tolist() == [12.5, -2.0]
+
+    def test_decimals_count_beside_a_number_of_many_digits(self) -> None:
+        assert units({"VAX": ["20120764048486.502", "5.517"]})["VAX"].tolist() == [1e-3, 1e-3]
 
     def test_a_factor_converts_number_and_digit(self) -> None:
         scene = impact88.sample(1).numbers()
         mph = float(impact88.solve(scene, "VAX")["VAX"]) * 15 / 22
         row = {**scene, "VAX": f"{mph:.3f}"}
         assert impact88.compare(row, factors={"VAX": 22 / 15}).passed
+        wrong = impact88.compare({**row, "VAX": "1.000"}, factors={"VAX": 22 / 15}, causes=False)
+        assert wrong.disagreements[0].ours == pytest.approx(mph)
         assert not impact88.compare(row).passed

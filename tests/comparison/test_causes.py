@@ -102,6 +102,19 @@ class TestMistakes:
         assert "WA" in cause.edit
         assert "revolutions per minute" in cause.edit
 
+    @long
+    def test_a_unit_of_rounded_results_is_named(self) -> None:
+        theirs = impact88.solve({**SCENE, "MB": SCENE["MB"] * 32.174}, VELOCITIES)
+        rounded = {name: np.char.mod("%.3f", column) for name, column in theirs.items()}
+        (cause,) = impact88.compare({**SCENE, **rounded}).causes
+        assert cause.edit == "MB multiplied by 32.174, as read (weight for mass, in ft and s)"
+
+    @long
+    def test_sine_and_cosine_exchanged_are_named(self) -> None:
+        theirs = impact88.solve({**SCENE, "PA": 90 - SCENE["PA"] - 2 * SCENE["TA"]}, VELOCITIES)
+        (cause,) = impact88.compare({**SCENE, **theirs}).causes
+        assert cause.edit == "sine and cosine of A's direction TA + PA exchanged"
+
 
 class TestNoCause:
     @long

@@ -19,6 +19,10 @@ from impact88.comparison import kit, oracle, selfcheck, words
 from impact88.comparison.spellings import VELOCITIES
 
 
+def in_thousandths(text: str) -> str:
+    return f"{float(text):.3f}" if text else ""
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("kit")
@@ -55,6 +59,7 @@ class TestKit:
             (kit.NO_NUMBER, lambda row, _: {**row, "VAX": "inf"}),
             (kit.PARTIAL, lambda row, _: {**row, "WBF": ""}),
             (kit.COARSE, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "1.5")}),
+            (kit.COARSE, lambda row, _: {**row, **{n: in_thousandths(row[n]) for n in VELOCITIES}}),
             (kit.COPIED, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "1.23456")}),
             (kit.COPIED, lambda row, rows: {**row, **{n: rows[6][n] for n in VELOCITIES}}),
             (kit.SURPLUS, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "0")}),
@@ -146,6 +151,7 @@ class TestTables:
             ("a.jsonl", "{\n", "line 1"),
             ("a.jsonl", "3\n", "no object"),
             ("a.txt", "", "expected a name ending"),
+            ("a.csv", 'M,MA,VAX\n6,"1,810",2\n', "row 1: MA = '1,810' is not a number"),
         ],
     )
     def test_unusable_files_are_named(

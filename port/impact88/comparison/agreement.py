@@ -91,12 +91,7 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
         bounds,
         _scales(scene, values),
         ties,
-        {
-            name: np.where(ties, column, np.nan)
-            for name, column in solve(reversed_friction, names).items()
-        }
-        if ties.any()
-        else values,
+        solve(reversed_friction, names) if ties.any() else values,
         (status & NO_ANSWER_NEEDED) > 0,
     )
 
@@ -144,8 +139,16 @@ def _scales(scene: Mapping[str, Floats], values: Mapping[str, Floats]) -> dict[s
     ratio = largest(1.0, values["MUC"])
     energy = largest(values["KI"], values["KF"])
     loss = largest(100.0, values["LOSS"])
-    kinds = {"W": spin, "K": energy, "EL": energy, "L": loss, "MU": ratio}
-    kinds |= {"PN": impulse, "PT": impulse, "PM": turning}
+    kinds = {
+        "W": spin,
+        "K": energy,
+        "EL": energy,
+        "L": loss,
+        "MU": ratio,
+        "PN": impulse,
+        "PT": impulse,
+        "PM": turning,
+    }
     size = len(scene["UX"])
     scales = {}
     for name in values:
@@ -175,15 +178,15 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
         inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
         terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
         bound = (np.abs(inverse) @ terms)[..., 0]
+        point = columns["M"] == 4.0
         speed = np.abs(solution[:, :4]).max(1)
         spin = np.abs(solution[:, 4:]).max(1)
         # a spin is found beside the angular momentum of the mass centres
         spins = [
-            np.fmax(spin, np.where(columns["M"] == 4.0, 0.0, m * np.abs(d) * speed / i))
-            for m, d, i in (
-                (columns["MA"], columns["DA"], columns["IA"]),
-                (columns["MB"], columns["DB"], columns["IB"]),
+            np.fmax(
+                spin, np.where(point, 0.0, columns[m] * np.abs(columns[d]) * speed / columns[i])
             )
+            for m, d, i in (("MA", "DA", "IA"), ("MB", "DB", "IB"))
         ]
         sizes = np.array([speed, speed, speed, speed, *spins]).T
         bound += _disparity(columns)[:, None] * sizes
@@ -196,8 +199,9 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
 
 def _disparity(scene: Mapping[str, Floats]) -> Floats:
     """Return the ratio of the masses or of the inertias, the larger to the smaller."""
-    masses = np.fmax(scene["MA"] / scene["MB"], scene["MB"] / scene["MA"])
-    inertias = np.fmax(scene["IA"] / scene["IB"], scene["IB"] / scene["IA"])
+    masses, inertias = (
+        np.fmax(scene[a] / scene[b], scene[b] / scene[a]) for a, b in (("MA", "MB"), ("IA", "IB"))
+    )
     return np.fmax(masses, np.where(scene["M"] == 4.0, 0.0, inertias))
 
 

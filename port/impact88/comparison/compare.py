@@ -12,7 +12,8 @@ from .conditions import find_condition, quantities_of
 from .evaluation import Floats
 from .grading import Table
 from .kit import Answers, check_kit
-from .mistakes import MAX_SAMPLE, columns_of, find_causes, spread
+from .mistakes import MAX_SAMPLE, columns_of, find_causes
+from .numbers import spread
 from .reading import read_table, scene_columns
 from .types import Comparison, Disagreement
 
@@ -120,9 +121,9 @@ def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
             continue
         relative = table.relative_difference(name)
         worst = int(relative.argmax())
-        where = None
-        if quantities:
-            where = find_condition(quantities, misfit[rows], ~table.wrong[rows])
+        condition = (
+            find_condition(quantities, misfit[rows], ~table.wrong[rows]) if quantities else None
+        )
         pairs = np.isfinite(table.theirs[name]) & np.isfinite(table.ours[name])
         disagreements.append(
             Disagreement(
@@ -131,9 +132,9 @@ def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
                 int(pairs.sum()),
                 worst + 1,
                 str(table.columns[name][worst]).strip(),
-                float(table.ours[name][worst]),
+                float(table.ours[name][worst] / table.factors[name]),
                 float(relative[worst]),
-                str(where) if where else "",
+                str(condition or ""),
             )
         )
     return tuple(disagreements)

@@ -10,6 +10,7 @@ import numpy as np
 from .conditions import roundest
 from .evaluation import Edit, Floats, Program, evaluate, stack
 from .mutants import sites, slot_name
+from .numbers import spread
 from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ Trial = Callable[[Floats], Mapping[str, Any]]
 def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
     """Return the edits of a part of a spelling by one constant that the rows agree on."""
     wrong = np.flatnonzero(sample.wrong)
-    subset = sample.rows(wrong[np.linspace(0, wrong.size - 1, min(ROWS, wrong.size)).astype(int)])
+    subset = sample.rows(spread(wrong, ROWS))
     program = subset.program(name)
     edits = _statement_constants(subset, program, part)
     return edits + _column_constants(subset, program) if name == NAMES[0] else edits
@@ -91,7 +92,7 @@ def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
 def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
     """Return the edits of columns as they are read, or results as they are shown."""
     edits = []
-    for side, names in (("<", COLUMNS[:-1]), (">", tuple(sample.theirs))):
+    for side, names in (("<", COLUMNS[:-1]), (">", (*sample.theirs,))):
         groups = [group.split(",") for group in GROUPS[side].split()]
         groups = [g for g in groups if set(g) <= set(names)] + [[name] for name in names]
         for group in groups:
@@ -99,14 +100,25 @@ def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
             forms += [LIMIT] if group[0] in ("E", "MU", "EM") else []
             for form in forms:
                 trial = _column_trial(program, side, group, form)
-                (constant,) = _fit(sample, trial, form, 1)
-                if np.isfinite(constant):
+                constants = _fit(sample, trial, form, 1)
+                constants += [_known_factor(sample, trial)] if form is FACTOR else []
+                for constant in filter(np.isfinite, constants):
                     number, meaning = _digits_and_meaning(constant, form)
                     verb = "read" if side == "<" else "shown"
                     says = f"{', '.join(group)} {form.says.format(number)}, as {verb}{meaning}"
                     changes = {f"{side} {n}": form.text.format(n, number) for n in group}
                     edits.append(Edit(says, changes, RANK_KNOWN if meaning else RANK - 1))
     return edits
+
+
+def _known_factor(sample: "Sample", trial: Trial) -> float:
+    """Return the known factor that gives most rows.
+
+    Rounded results fix a large factor too loosely to be fitted.
+    """
+    factors = np.array([k for ratio in KNOWN.values() for k in (ratio, 1 / ratio)])
+    names = trial(np.repeat(factors[:, None], sample.wrong.size, 1))
+    return float(factors[sample.fits(names, factors.size).sum(1).argmax()])
 
 
 def _column_trial(program: Program, side: str, group: list[str], form: Form) -> Trial:

@@ -19,6 +19,7 @@ from .conditions import Condition, find_condition, quantities_of
 from .constants import fit_constants
 from .evaluation import Edit, Floats, Program
 from .mutants import RANK_MODEL, Site, describe, models, sites
+from .numbers import spread
 from .spellings import NAMES, VELOCITIES, spelling
 
 SCREEN_ROWS = 10  # rows that disagree on which every edit is tried
@@ -156,7 +157,7 @@ def search(
     hold final velocities the results follow from those.
     """
     wrong = np.flatnonzero(sample.wrong)
-    places = wrong[np.linspace(0, wrong.size - 1, min(SCREEN_ROWS, wrong.size)).astype(int)]
+    places = spread(wrong, SCREEN_ROWS)
     screen = sample.rows(places)
     candidates: list[Candidate] = []
     targets = {key for edit in base for key in edit.changes}

@@ -28,6 +28,8 @@ class Table:
     ----------
     names, empty : list of str
         Results in the table, and those without any number.
+    factors : dict of str to float
+        What converts each result to the units of the scene.
     theirs, ours, units : dict of str to ndarray
         The table's numbers, the reference, a unit of the last digit written.
     misfit : dict of str to ndarray of bool
@@ -45,10 +47,10 @@ class Table:
         self.scene, self.columns = scene, columns
         self.size = len(scene["UX"])
         self.names = [name for name in COMPARED if name in columns]
-        scales = {name: factors.get(name, 1.0) for name in self.names}
-        self.theirs = {name: numbers(columns[name]) * k for name, k in scales.items()}
+        self.factors = {name: factors.get(name, 1.0) for name in self.names}
+        self.theirs = {name: numbers(columns[name]) * k for name, k in self.factors.items()}
         digits = units({name: columns[name] for name in self.names})
-        self.units = {name: unit * abs(scales[name]) for name, unit in digits.items()}
+        self.units = {name: unit * abs(self.factors[name]) for name, unit in digits.items()}
         self.empty = [n for n in self.names if not np.isfinite(self.theirs[n]).any()]
         self.reference = reference(scene, self.names)
         self.ours = dict(self.reference.values)
@@ -74,18 +76,18 @@ class Table:
         """Set the rows of each grade."""
         self.misfit: dict[str, Bools] = {}
         self.lost = np.zeros(self.size, bool)
-        answers, expected = [], []
         for name in self.names:
             difference = np.abs(self.theirs[name] - self.ours[name])
             off = difference > self._limit(name)
             close = LOST_DIGITS * self.reference.scales[name] + self.units[name] / 2
             self.lost |= off & (difference <= close)
             self.misfit[name] = off & ~(difference <= close)
-            answers.append(np.isfinite(self.theirs[name]))
-            expected.append(np.isfinite(self.ours[name]))
         self._excuse_elimination()
         self.wrong: Bools = np.any(list(self.misfit.values()), 0)
-        answer, expectation = np.array(answers), np.array(expected)
+        answer, expectation = (
+            np.isfinite(np.array([results[name] for name in self.names]))
+            for results in (self.theirs, self.ours)
+        )
         self.missing: Bools = (~answer & expectation).any(0) & ~self.reference.optional
         self.surplus: Bools = (answer & ~expectation).any(0)
         compared = (answer & expectation).any(0)

@@ -4,6 +4,7 @@ import gzip
 import hashlib
 import json
 import os
+from collections import Counter
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
@@ -14,7 +15,7 @@ import numpy as np
 from ..errors import UserError
 from ..files import packaged_bytes, write_folder
 from .agreement import Bools
-from .numbers import digits_written, numbers
+from .numbers import EMPTY, numbers, units
 from .spellings import COLUMNS, VELOCITIES
 
 FROZEN_ID = "1988.1"
@@ -23,8 +24,7 @@ HEAD = ("id", "class", "expect")
 ANSWER = "answer"
 REFUSE = "refuse"
 EITHER = "either"
-MIN_DIGITS = 6  # of a kit's answers: single precision has them
-EMPTY = ("", "nan", "null", "none")
+MIN_STEPS = 0.99e5  # units of the last digit in a kit's answer: six digits, as single precision has
 
 MISSING = "the table has no row with this id"
 REPEATED = "the id is in more than one row"
@@ -105,7 +105,7 @@ class Answers:
         rows: dict[str, list[int]] = {}
         for row, label in enumerate(np.asarray(columns["id"]).tolist()):
             rows.setdefault(str(label).strip(), []).append(row)
-        self.stray = [label for label in rows if label not in {v["id"] for v in self.vectors}]
+        self.stray = sorted(rows.keys() - {vector["id"] for vector in self.vectors})
         self.places = np.zeros(len(self.vectors), int)
         for place, vector in enumerate(self.vectors):
             found = rows.get(vector["id"], [])
@@ -124,8 +124,8 @@ class Answers:
 
     def _in_order(self, column: Any) -> Any:
         """Return a column in the order of the vectors, empty where there is no row."""
-        cells = [str(cell).strip() for cell in np.asarray(column).tolist()]
-        return np.array([cells[place] if place >= 0 else "" for place in self.places])
+        cells = [*(str(cell).strip() for cell in np.asarray(column).tolist()), ""]
+        return np.array([cells[place] for place in self.places])
 
     def _check(self, columns: Mapping[str, Any]) -> None:
         """Find inputs that were changed, and cells that are neither empty nor a number."""
@@ -151,6 +151,12 @@ class Answers:
             elif finite and vector["expect"] == REFUSE:
                 self.reasons[label] = SURPLUS
 
+    def _is_coarse(self, name: str) -> bool:
+        """Return whether half of a result's numbers have too few digits."""
+        sizes = np.abs(numbers(self.results[name]))
+        steps = (sizes / units({name: self.results[name]})[name])[sizes > 0]
+        return bool(steps.size and np.median(steps) < MIN_STEPS)
+
     def verdict(self, wrong: Bools) -> dict[str, Any]:
         """Return the kit's part of a comparison.
 
@@ -159,13 +165,10 @@ class Answers:
         wrong : ndarray of bool
             Vectors of which a result disagrees.
         """
-        digits = [digits_written(self.results[name]) for name in VELOCITIES]
-        if any(count is not None and count[1] < MIN_DIGITS for count in digits):
+        if any(self._is_coarse(name) for name in VELOCITIES):
             self.reasons = {v["id"]: self.reasons.get(v["id"], COARSE) for v in self.vectors}
         six = [tuple(self.results[n][k] for n in VELOCITIES) for k in range(len(self.vectors))]
-        counts: dict[tuple[str, ...], int] = {}
-        for texts in six:
-            counts[texts] = counts.get(texts, 0) + 1
+        counts = Counter(six)
         for place in np.flatnonzero(wrong):
             reason = COPIED if counts[six[place]] > 1 else DISAGREES
             self.reasons.setdefault(self.vectors[place]["id"], reason)

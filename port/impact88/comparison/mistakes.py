@@ -10,6 +10,7 @@ from .agreement import LOST_DIGITS, elimination_bounds
 from .diagnosis import MIN_BITS, MIN_HELD_OUT, REQUIRED, Candidate, Sample, explain, information
 from .evaluation import Floats
 from .grading import Table
+from .numbers import spread
 from .rows import cut_digits, other_rows, single_precision
 from .spellings import COLUMNS, VELOCITIES
 from .types import Cause
@@ -21,12 +22,6 @@ ROUNDINGS = 30.0  # bounds by which a mistake's numbers may be off
 BLOCK = 20_000  # rows in which a cause is counted at a time
 MAX_RESULT_CAUSES = 4
 Places = NDArray[np.intp]
-
-
-def spread(places: Places, count: int) -> Places:
-    """Return at most so many places, evenly spread."""
-    chosen: Places = np.linspace(0, places.size - 1, min(count, places.size)).astype(np.intp)
-    return places.take(chosen)
 
 
 def columns_of(table: Table, rows: Places) -> dict[str, Floats]:

@@ -5,19 +5,27 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .evaluation import Floats
 
 FULL_PRECISION = 15  # digits from which a column is taken for doubles written in full
 MAX_CELLS = 2000  # of a column, in which its digits are counted
+EMPTY = ("", "nan", "null", "none")
+"""Cells without a number."""
 _NUMBER = re.compile(r"[-+]?(\d*)\.?(\d*)(?:[eEdD]([-+]?\d+))?")
 
 
+def spread(values: NDArray[Any], count: int) -> NDArray[Any]:
+    """Return at most so many values of an array, evenly spread."""
+    return values.take(np.linspace(0, values.size - 1, min(count, values.size)).astype(int))
+
+
 def number(text: Any) -> float:
-    """Return a cell's number, NaN if it has none."""
+    """Return a cell's number, Fortran's 1D2 too; NaN if it has none."""
     try:
-        return float(text)
-    except (TypeError, ValueError):
+        return float(str(text).upper().replace("D", "E"))
+    except ValueError:
         return np.nan
 
 
@@ -46,8 +54,7 @@ def _digits(text: str) -> tuple[int, int] | None:
 
 def digits_written(column: Any) -> tuple[int, int] | None:
     """Return the most decimals and significant digits of a column; None if all numbers are 0."""
-    cells = np.asarray(column)
-    cells = cells[np.linspace(0, cells.size - 1, min(MAX_CELLS, cells.size)).astype(int)]
+    cells = spread(np.asarray(column), MAX_CELLS)
     digits = [d for d in map(_digits, map(str, cells.tolist())) if d]
     if not digits:
         return None
@@ -60,21 +67,18 @@ def units(columns: Mapping[str, Any]) -> dict[str, Floats]:
     Notes
     -----
     A format has a fixed number of decimals or of digits, and trailing zeros may be cut: what counts
-    is the longest number of a column. A column of zeros has the digits of the longest column. From
-    `FULL_PRECISION` digits on the unit is 0.
+    is the longest number of a column. A column of zeros has the decimals of the longest column.
+    From `FULL_PRECISION` digits on decimals alone count: 1e12 with three decimals has 16 digits.
     """
     counts = {name: d for name, c in columns.items() if (d := digits_written(c)) is not None}
-    longest = max((s for _, s in counts.values()), default=FULL_PRECISION)
-    decimals = max((d for d, _ in counts.values()), default=FULL_PRECISION)
+    longest = max(counts.values(), default=(FULL_PRECISION, FULL_PRECISION))
     result = {}
     for name, column in columns.items():
         values = np.abs(numbers(column))
-        places, significant = counts.get(name, (decimals, longest))
-        if significant >= FULL_PRECISION:
-            result[name] = np.zeros(values.size)
-            continue
+        places, significant = counts.get(name, longest)
         with np.errstate(all="ignore"):
             exponents = np.floor(np.log10(values))
             exponents = np.where(np.isfinite(exponents), exponents, -np.inf)
-            result[name] = np.fmax(10.0**-places, 10.0 ** (exponents - significant + 1))
+            last_digits = 10.0 ** (exponents - significant + 1) * (significant < FULL_PRECISION)
+            result[name] = np.fmax(10.0**-places, last_digits)
     return result

@@ -73,9 +73,7 @@ def oracle(
         listing_run = run(scene)
         results = {}
         for name in COMPARED:
-            printed, stored, decimal = applesoft.get(
-                name, [(None, None, None)] * len(valid_scenes)
-            )[row]
+            printed, stored, decimal = applesoft[name][row] if name in applesoft else (None,) * 3
             double = float(doubles[name][row])
             results[name] = {
                 "printed": printed,

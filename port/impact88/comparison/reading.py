@@ -16,7 +16,7 @@ from ..errors import UserError, quoted
 from ..files import read_text
 from ..names import DEFAULT_M, missing
 from .evaluation import Floats
-from .numbers import numbers
+from .numbers import EMPTY, numbers
 from .spellings import COLUMNS
 
 BODY_COLUMNS = ("EM", "DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB")
@@ -125,6 +125,9 @@ def scene_columns(columns: Mapping[str, Any], values: Mapping[str, Any]) -> dict
     for name in ("M", *COLUMNS[:-1]):
         if name in columns:
             scene[name] = numbers(columns[name])
+            for row in np.flatnonzero(np.isnan(scene[name])):
+                if str(cell := columns[name][row]).strip().lower() not in EMPTY:
+                    raise UserError(f"{name} = {quoted(cell)} is not a number", f"row {row + 1}")
         elif name in values or name == "M":
             scene[name] = np.full(size, float(values.get(name, DEFAULT_M)))
         elif name in BODY_COLUMNS and (scene["M"] == 4.0).all():
