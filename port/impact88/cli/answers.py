@@ -30,7 +30,8 @@ def answer_lines(answer: Answer) -> Iterator[str]:
         yield from paragraph(text, "HELPS", LABEL)
     for other in answer.alternatives:
         if not other.possible:
-            yield from paragraph(other.evidence or other.question, "REJECTED", LABEL)
+            reason = other.warnings[0] if other.warnings else other.evidence
+            yield from paragraph(reason.partition(": ")[2] or reason, "REJECTED", LABEL)
     for text in answer.warnings:
         yield from paragraph(text, "!", 2)
     for text in answer.remarks:

@@ -24,7 +24,7 @@ from .fit import EXACT_TOL, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
-from .problem import ANGLES, ARMS, RANGES, Problem, signs_of_friction
+from .problem import ANGLES, ARMS, RANGES, WIDEST, Problem, signs_of_friction
 
 CONTRADICTION = 1e-3  # probability of a misfit below which values contradict one another
 LIKELY = 9.0  # sum of squares above the least, up to which an impact is shown
@@ -288,9 +288,11 @@ def reconstruct(
     ]
     if found.agreeing and results[0].verdict == "contradictory":
         best = min(found.agreeing, key=lambda fit: fit.squares)
-        near = _Neighbourhood(best)
-        tests, evidence = _tests(near), _evidence(near)
-        results[0] = replace(results[0], tests=tests, evidence=evidence)
+        if best.probability < CONTRADICTION:
+            near = _Neighbourhood(best)
+            results[0] = replace(results[0], tests=_tests(near), evidence=_evidence(near))
+        else:  # they agree with each other, but not with physics
+            results[0] = replace(results[0], broken=best.broken())
     if samples and results[0].verdict in ("agrees", "at a limit"):
         results = _with_draws(results, found.fits, problems, samples, seed, progress)
     return results
@@ -473,7 +475,7 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
             for name, sd in deviations.items()
             if sd > TIE * abs(values[name])
         },
-        assumed=problem.assumed,
+        assumed=problem.assumed | _unlimited(problem, undetermined),
         verdict=verdict,
         tests=_tests(near),
         deviations=deviations,
@@ -489,6 +491,18 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         remarks=tuple(remarks),
         point=problem.point,
     )
+
+
+def _unlimited(problem: Problem, undetermined: Sequence[str]) -> dict[str, str]:
+    """Return the ranges of the motions that are left open."""
+    names = [item.name for item in problem.coordinates if item.name not in problem.known]
+    return {
+        name: "in any direction"
+        if name in COURSES
+        else f"up to {WIDEST:g} times the largest motion given"
+        for name in names
+        if name in undetermined and name in (*BEFORE, *AFTER, *SPEEDS, *COURSES)
+    }
 
 
 def result_names(problem: Problem) -> list[str]:
@@ -555,8 +569,7 @@ def _tests(near: _Neighbourhood) -> dict[str, Test]:
     for k, item in enumerate(fit.measured):
         sd = item.sd
         misfit = float(np.ravel(problem.misses(near.impacts, item))[0])
-        own = near.slopes(item.name)[near.open :][k] / sd if len(fit.names) else 0.0
-        checked = 1.0 - min(max(own, 0.0), 1.0)  # part of an error that the adjustment shows
+        checked = 1.0 - float(fit.leverage[k])  # part of an error that the adjustment shows
         if checked <= CHECKED:
             misfit_of_others, residual = 0.0, 0.0
         else:

@@ -58,7 +58,8 @@ class Fit:
     measured: list[Known]
     key: Array = field(default_factory=lambda: np.empty(0))
     settled: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, bool))
-    rank: int = 0  # directions that measured values determine
+    rank: int = 0  # directions that measured values determine, along the limits
+    leverage: Array = field(default_factory=lambda: np.empty(0))  # of measured values on themselves
 
     @property
     def redundancy(self) -> int:
@@ -219,11 +220,15 @@ class Search:
     def describe(self, minimum: Minimum) -> Fit:
         """Return a minimum with what it leaves open and what it depends on."""
         point = minimum.point
-        by_soft, by_hard = self.slopes(point)
-        by_hard = by_hard[: len(self.hard)]  # a limit at which it lies is not a known value
+        by_soft, by_limits = self.slopes(point)
+        by_hard = by_limits[: len(self.hard)]
         basis = null_space(by_hard) if len(by_hard) else np.eye(len(point))
         u, s, vt = np.linalg.svd(by_soft @ basis)
         rank = int((s > STEP * max(s.max(initial=0.0), 1e-300)).sum())
+        # a limit at which it lies checks known values, but makes none more certain
+        within = null_space(by_limits) if len(by_limits) else basis
+        directions, size, _ = np.linalg.svd(by_soft @ within)
+        free = int((size > STEP * max(size.max(initial=0.0), 1e-300)).sum())
         sensitivity = (basis @ vt[:rank].T / s[:rank]) @ u[:, :rank].T
         fit = Fit(
             problem=self.problem,
@@ -236,7 +241,8 @@ class Search:
             measured=self.measured,
             key=self.invariants(point[None])[:, 0],
             settled=np.ones(12, bool),
-            rank=rank,
+            rank=free,
+            leverage=np.square(directions[:, :free]).sum(1),
         )
         for direction in (fit.open_directions / self.sizes[:, None]).T:
             both = self.invariants(point + 1e-5 * np.array([[1.0], [-1.0]]) * direction)

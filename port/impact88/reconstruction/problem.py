@@ -43,6 +43,7 @@ ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 """Ranges of coefficients that are not given (listing, lines 40 and 50)."""
+FINAL = ("SAF", "HAF", "VAX", "VAY")
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
 MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
 TOUCH = 1e-9  # least speed, closing speed and impulse that count, over typical ones
@@ -82,12 +83,15 @@ class Problem:
         self.known = known = dict(known)
         self.point = known.pop("M", Amount.exactly(6.0)).value == 4
         self._add_crush(known)
+        self._set_barrier(known)
         self._set_at_rest(known)
         self._complete(known)
         self.sign = self._set_friction(known, sign)
         self.given = {name for name in COEFFICIENTS if name in known}
         self._set_scales()
-        self.frames = {vehicle: self._frame(vehicle) for vehicle in "AB"}
+        self.frames: dict[str, tuple[str, str]] = {}
+        for vehicle in "AB":
+            self.frames[vehicle] = self._frame(vehicle)
         self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
         self.coordinates: list[Known] = []
         self.fixed: dict[str, float] = {}
@@ -132,6 +136,15 @@ class Problem:
             kind,
             float(np.hypot(first.sd, second.sd)),
         )
+
+    def _set_barrier(self, known: dict[str, Amount]) -> None:
+        """Let a barrier, of infinite mass, rest unless its motion is given; it faces nothing."""
+        if "MB" in known and np.isinf(known["MB"].value):
+            if not {"VX", "VY", "SB", "VBX", "VBY", "SBF"} & known.keys():
+                known["SB"] = Amount.exactly(0.0)
+            known.setdefault("IB", known["MB"])
+            for name in ("TB", "DB", "PB", "WB"):
+                known.setdefault(name, Amount.exactly(0.0))
 
     def _set_at_rest(self, known: dict[str, Amount]) -> None:
         """Replace a speed of 0 by two velocities of 0."""
@@ -322,12 +335,19 @@ class Problem:
             x_after if x not in self.known and x_after in self.known else x,
             y_after if y not in self.known and y_after in self.known else y,
         )
-        return max([mixed, (speed, course), (f"S{vehicle}F", f"H{vehicle}F")], key=score)
+        after = (f"S{vehicle}F", f"H{vehicle}F")
+        frames = [mixed, (speed, course), after]
+        is_after = vehicle == "B" and any(name in FINAL for name in self.frames["A"])
+        if is_after and not self._leaves("E", "MUP"):
+            frames = [(x, y), (speed, course)]
+        return max(frames, key=score)
 
     def _choose_coordinates(self) -> set[str]:
         """Set `coordinates` and `fixed`, and return the names that are used."""
         spins = [
-            after if before not in self.known and after in self.known else before
+            after
+            if before not in self.known and after in self.known and self._leaves("EM")
+            else before
             for before, after in (("WA", "WAF"), ("WB", "WBF"))
         ]
         names = [*self.frames["A"], *self.frames["B"], *spins]
@@ -363,13 +383,19 @@ class Problem:
             return -np.inf, np.inf
         return -WIDEST * self.size(name), WIDEST * self.size(name)
 
+    def _leaves(self, *coefficients: str) -> bool:
+        """Return False if nothing is left of a relative velocity: no inverse leads back from it
+        (E, EM = 0, or a pivot)."""
+        amounts = [self.known.get(name) for name in coefficients]
+        return not any(_is_zero(a) or (a and not a.varies and a.value == PIVOT) for a in amounts)
+
     def _has_no(self, coefficient: str) -> bool:
         return self.point and coefficient == "EM"
 
     def _assume(self, name: str) -> None:
         """Note the range of a coefficient whose impulse is the coordinate."""
         coefficient = dict(zip(IMPULSES, COEFFICIENTS, strict=True)).get(name, "")
-        if coefficient in self.excluded:
+        if coefficient in self.excluded or (coefficient == "MUP" and self.share):
             return
         if coefficient == "MUP":
             self.assumed[coefficient] = "friction up to what ends the sliding, with an allowance"

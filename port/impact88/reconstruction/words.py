@@ -59,7 +59,8 @@ def question(result: Reconstruction) -> str:
 
 
 def _is_asked(result: Reconstruction, speed: str) -> bool:
-    return speed not in result.known and not {*SPEEDS[speed]} <= result.known.keys()
+    has_motion = speed in result.values or speed in result.undetermined
+    return has_motion and speed not in result.known and not {*SPEEDS[speed]} <= result.known.keys()
 
 
 def evidence(result: Reconstruction, view: View = PLAIN) -> str:

@@ -415,6 +415,9 @@ def numbers_of(
         ends: tuple[float | None, float | None, str, str] = (None, None, "", "")
         if name in intervals:
             low, high = (float(x) for x in case.view.shown_ends(name, *intervals[name]))
+            if row.unit == ANGLE and math.isfinite(value):  # a heading is within one turn
+                turns = 360.0 * round((value - (low + high) / 2) / 360.0)
+                low, high = low + turns, high + turns
             decimals = decimals_with((low, high), decimals)
             ends = low, high, rounded(low, decimals), rounded(high, decimals)
         text = rounded(value, decimals)
