@@ -449,13 +449,14 @@ class _Reader:
 
         share = self.entries["MU"].value
         scene = {name: _double(text) for name, text in texts.items()}
-        values, missing = evaluate(scene, ["MUC"])
-        critical = float(values.get("MUC", math.nan))
-        mu = share * abs(critical)
+        values, missing = evaluate(scene, ["MUC", "gt"])
+        turn = -1 if values.get("gt", 0) > 0 else 1  # line 400 turns it again
+        critical = turn * float(values.get("MUC", math.nan))
+        mu = share * critical
         if not math.isfinite(mu):
             if {"MA", "MB"} <= {*texts}:  # else it is a table's, whose rows have the rest
                 names = " ".join(missing.get("MUC", ["a critical friction"]))
-                self.remarks.append(f"MU = {self.given['MU']} needs {names}: it is not computed")
+                self.remarks.append(f"MU = {self.given['MU']} needs {names} to be a number")
             return {}
         self.remarks.append(
             f"MU = {mu:.6g} is {100 * share:g} % of the critical friction {abs(critical):.6g}"

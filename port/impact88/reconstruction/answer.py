@@ -24,7 +24,7 @@ from .fit import EXACT_TOL, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
-from .problem import ANGLES, ARMS, RANGES, WIDEST, Problem, signs_of_friction
+from .problem import ANGLES, ARMS, RANGES, WIDEST, Problem, signs_of_friction, unwrapped
 
 CONTRADICTION = 1e-3  # probability of a misfit below which values contradict one another
 LIKELY = 9.0  # sum of squares above the least, up to which an impact is shown
@@ -669,7 +669,7 @@ def _with_sample(result: Reconstruction, drawn: Sample | None, seed: int) -> Rec
     names = [
         n for n in result_names(drawn.problem) if n in result.values or n in result.undetermined
     ]
-    columns = {name: _unwrapped(name, drawn[name], result.values.get(name)) for name in names}
+    columns = {name: unwrapped(name, drawn[name], result.values.get(name)) for name in names}
     columns = {name: x for name, x in columns.items() if np.isfinite(x).all()}
     intervals = dict(result.intervals)
     for name, column in columns.items():
@@ -684,16 +684,6 @@ def _with_sample(result: Reconstruction, drawn: Sample | None, seed: int) -> Rec
         bounds=drawn.bounds(bounded, seed) if bounded else {},
         assumed=_reached(result.assumed, columns),
     )
-
-
-def _unwrapped(name: str, column: Array, middle: float | None) -> Array:
-    """Return directions about a value, so that no interval crosses the half turn."""
-    if name not in ANGLES:
-        return column
-    if middle is None:
-        sines = np.exp(1j * np.radians(column)).mean()
-        middle = float(np.degrees(np.angle(sines)))
-    return np.asarray(middle + (column - middle + 180.0) % 360.0 - 180.0)
 
 
 def _reached(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[str, str]:

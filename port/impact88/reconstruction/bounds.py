@@ -22,15 +22,16 @@ from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, quantity, spl
 from ..status import Status
 from .densities import correlated
 from .extremes import box_seeds, extremes
-from .impacts import Array
+from .impacts import COURSES, FORCES, SPEEDS, Array
 from .known import as_amounts
-from .problem import OWN_AXES, placed
+from .problem import ANGLES, OWN_AXES, placed, unwrapped
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
 RANKED_DRAWS = 20_000  # used for rank correlations: standard error 0.007
 SWEEP_POINTS = 21  # of each input alone: the top of a parabola is missed by 0.3 % at most
 MAX_DRAWS = 100_000_000  # of all outputs together: 800 MB
+BOUNDED = (*RESULTS, *SPEEDS, *COURSES, *FORCES, "DVAF", "DVAR", "DVBF", "DVBR", "EL", "DT")
 INPUTS = (*SCENE, *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
 
 
@@ -191,10 +192,12 @@ def bounds(
     if not 2 <= samples <= MAX_DRAWS // max(len(names), 1):
         raise UserError(f"{samples} samples; expected 2 to {MAX_DRAWS // max(len(names), 1):,}")
 
+    middle = {n: float(x[0]) for n, x in box.results(box.nominal, names).items()}
+
     def table(points: Array) -> Array:
         results = box.results(points, (*names, "STATUS"))
         bits = results.get("STATUS", np.zeros(len(points))).astype(int)
-        columns = np.stack([results[name] for name in names], 1)
+        columns = np.stack([unwrapped(n, results[n], middle.get(n)) for n in names], 1)
         usable = np.isfinite(columns) & (bits & unwanted == 0)[:, None]
         return np.where(usable, columns, np.nan)
 
@@ -227,7 +230,7 @@ def bounds(
 def _outputs(box: _Box, outputs: Sequence[str] | str | None) -> list[str]:
     """Return the results wanted. Raises UserError for one that needs more inputs."""
     names = list(dict.fromkeys(OUTPUTS if outputs is None else split_names(outputs)))
-    check_names(names, RESULTS, "result")
+    check_names(names, BOUNDED, "result")
     columns = placed({**box.exact, **dict(zip(box.varied, box.nominal[0], strict=True))})
     _, lacking = evaluate(columns, names)
     if lacking and (outputs is not None or len(lacking) == len(names)):

@@ -500,6 +500,16 @@ def _is_zero(amount: Amount | None) -> bool:
     return amount is not None and not amount.varies and amount.value == 0
 
 
+def unwrapped(name: str, column: Array, middle: float | None) -> Array:
+    """Return directions about a value, so that no interval crosses the half turn."""
+    if name not in ANGLES:
+        return column
+    if middle is None:
+        sines = np.exp(1j * np.radians(column)).mean()
+        middle = float(np.degrees(np.angle(sines)))
+    return np.asarray(middle + (column - middle + 180.0) % 360.0 - 180.0)
+
+
 def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:
     """Return the signs of P_t that MU leaves open (line 400 decides by the sliding)."""
     friction = known.get("MU")

@@ -284,7 +284,7 @@ def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     question = "velocities after the impact, from a complete scene"
     if case.ranges:
         found = _bounds(case, shown, seed)
-        intervals = {name: bound.interval for name, bound in found.outputs.items()}
+        intervals = {n: b.interval for n, b in found.outputs.items() if b.upper > b.lower}
         drivers = {name: _effects(bound.drivers) for name, bound in found.outputs.items()}
         warnings += _drawn_warnings(found.warnings, bits)
         question += f" in which {_listed(case.ranges)} {_verb(case.ranges)} known within limits"
@@ -303,13 +303,13 @@ def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
 
 def _bounds(case: Case, names: Iterable[str], seed: int) -> Bounds:
     """Return quantiles and drivers of the results of a scene within its limits."""
-    from ..reconstruction.bounds import bounds
+    from ..reconstruction.bounds import BOUNDED, bounds
 
     values = {
         name: case.numbers.get(name) if math.isnan(amount.value) else amount
         for name, amount in sorted(case.entries.items())  # random draws, whatever the file's order
     }
-    wanted = [name for name in names if name in RESULTS]
+    wanted = [name for name in names if name in BOUNDED]
     return bounds(values, wanted, samples=DRAWS, seed=seed, correlations=case.correlations)
 
 

@@ -398,9 +398,10 @@ class _Rows:
         where = np.flatnonzero(~np.isnan(self.shares))
         if where.size:
             scene = {n: x[where] for n, x in self.columns.items() if n != "MU"}
-            critical = evaluate(scene, ["MUC"])[0].get("MUC", np.nan)
+            values = evaluate(scene, ["MUC", "gt"])[0]
+            turn = np.where(values.get("gt", 0.0) > 0, -1.0, 1.0)  # line 400 turns it again
             friction = self.columns.setdefault("MU", np.full(self.count, np.nan))
-            friction[where] = self.shares[where] * np.abs(critical)
+            friction[where] = self.shares[where] * turn * values.get("MUC", np.nan)
             self.shown["MU"] = friction
 
     def solve(self) -> dict[str, NDArray[Any]]:
