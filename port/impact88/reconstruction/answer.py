@@ -37,6 +37,7 @@ INTERVAL = (0.05, 0.95)
 STEP = 1e-6  # of difference quotients, in typical sizes; a smaller change is rounding
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
+OUTSIDE = "no impact within all limits was found: intervals are to first order"
 ADVERSE = ("impossible", "contradictory")
 BOUNDED = ("SA", "SB", "DVA", "DVB")
 CORRELATED = ("UX", "UY", "VX", "VY", "SA", "SB", "DVA", "DVB", "PDOFA", "PDOFB", "E", "MUP", "EM")
@@ -658,8 +659,7 @@ def _with_draws(
 def _with_sample(result: Reconstruction, drawn: Sample | None, seed: int) -> Reconstruction:
     """Return a result with the intervals and bounds of draws."""
     if drawn is None:
-        remark = "no impact within all limits was found: intervals are to first order"
-        return replace(result, remarks=(*result.remarks, remark))
+        return replace(result, remarks=(*result.remarks, OUTSIDE))
     if drawn.families < MIN_FAMILIES:
         remark = (
             f"the draws tell no more than {drawn.families:.0f} independent ones would: intervals "

@@ -24,7 +24,7 @@ from .densities import correlated
 from .extremes import box_seeds, extremes
 from .impacts import COURSES, FORCES, SPEEDS, Array
 from .known import as_amounts
-from .problem import ANGLES, OWN_AXES, placed, unwrapped
+from .problem import OWN_AXES, placed, unwrapped
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)

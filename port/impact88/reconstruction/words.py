@@ -12,7 +12,7 @@ from typing import Any
 from ..cases.units import PLAIN, View
 from ..mechanics.laws import BROKEN
 from ..names import quantity
-from .answer import CONTRADICTION, MAX_NAMED, Reconstruction, Test
+from .answer import CONTRADICTION, MAX_NAMED, OUTSIDE, Reconstruction, Test
 from .impacts import SPEEDS
 
 POOR = 0.05  # probability below which values agree poorly
@@ -126,6 +126,12 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     return text
 
 
+def warnings(result: Reconstruction, view: View = PLAIN) -> list[str]:
+    """Return reasons to doubt the answer: why no impact agrees, that none is within all limits."""
+    reason = refusal(result, view)
+    return [*([reason] if reason else []), *(text for text in result.remarks if text == OUTSIDE)]
+
+
 def _farthest(tests: Any) -> list[tuple[str, Test]]:
     """Return the values that an impact has farthest from where they were measured."""
     moved = [(n, t) for n, t in tests.items() if abs(t.adjusted - t.measured) >= t.sd]
@@ -168,7 +174,7 @@ def drivers(result: Reconstruction, name: str) -> str:
 def remarks(result: Reconstruction) -> tuple[str, ...]:
     """Return what was made of the problem, and how it was searched."""
     ended, impacts, unseen = result.search
-    lines = [*result.remarks]
+    lines = [text for text in result.remarks if text != OUTSIDE]
     if impacts:
         lines.append(
             f"{ended} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected number "

@@ -474,10 +474,14 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         if (shares := impact.drivers.get(name, {})) and [*shares] != [name]
     }
     intervals = {n: ends for n, ends in impact.intervals.items() if n in values}
-    refusal = words.refusal(impact, case.view)
     scene = {**case.numbers, **impact.values}
+    warnings = words.warnings(impact, case.view)
     with suppress(UserError):  # an impact that leaves inputs open has no scene
-        scene |= impact.scene()
+        determined = impact.scene()
+        scene |= determined
+        if not impact.is_adverse:
+            bits = int(evaluate(determined, ("STATUS",))[0]["STATUS"])
+            warnings += status.sentences(bits & ~status.IMPOSSIBLE)
     return Answer(
         "reconstruct",
         words.question(impact),
@@ -490,7 +494,7 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         advice=words.advice(impact),
         checks=_checks(case, impact),
         remarks=(*case.remarks, *words.remarks(impact)),
-        warnings=(refusal,) if refusal else (),
+        warnings=tuple(warnings),
         scene=scene,
     )
 
