@@ -381,6 +381,8 @@ def _nearest(
 ) -> tuple[list[tuple[Fit, str]], bool]:
     """Return the admissible impact nearest to what is known, and whether exact values had to be
     softened to one tolerance because no admissible impact has them all."""
+    if problems[0].forbidden:
+        return [], True
     for soften in (False, True) if agreeing else (True,):
         limited: list[Fit] = []
         for problem in problems:
@@ -496,13 +498,10 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
 
 def _unlimited(problem: Problem, undetermined: Sequence[str]) -> dict[str, str]:
     """Return the ranges of the motions that are left open."""
-    names = [item.name for item in problem.coordinates if item.name not in problem.known]
     return {
-        name: "in any direction"
-        if name in COURSES
-        else f"up to {WIDEST:g} times the largest motion given"
-        for name in names
-        if name in undetermined and name in (*BEFORE, *AFTER, *SPEEDS, *COURSES)
+        item.name: f"up to {WIDEST:g} times the largest motion given"
+        for item in problem.coordinates
+        if item.name not in problem.known and {item.name} & {*undetermined} & {*BEFORE, *SPEEDS}
     }
 
 

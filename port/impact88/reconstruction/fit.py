@@ -83,7 +83,7 @@ class Fit:
         impacts = self.problem.impacts(self.names, self.point[None])
         with np.errstate(all="ignore"):
             rows = self.problem.margins(impacts, friction)
-        excess: dict[str, float] = {}
+        excess = dict.fromkeys(self.problem.forbidden, 1.0)
         for name, margin in rows:
             amount = -float(np.nan_to_num(np.ravel(margin)[0], nan=-1.0))
             if amount > STEP:
@@ -224,11 +224,11 @@ class Search:
         by_hard = by_limits[: len(self.hard)]
         basis = null_space(by_hard) if len(by_hard) else np.eye(len(point))
         u, s, vt = np.linalg.svd(by_soft @ basis)
-        rank = int((s > STEP * max(s.max(initial=0.0), 1e-300)).sum())
+        rank = rank_of(s)
         # a limit at which it lies checks known values, but makes none more certain
         within = null_space(by_limits) if len(by_limits) else basis
         directions, size, _ = np.linalg.svd(by_soft @ within)
-        free = int((size > STEP * max(size.max(initial=0.0), 1e-300)).sum())
+        free = rank_of(size)
         sensitivity = (basis @ vt[:rank].T / s[:rank]) @ u[:, :rank].T
         fit = Fit(
             problem=self.problem,
@@ -329,8 +329,12 @@ def expected_unseen(minima: int, ended: int) -> float:
 def null_space(matrix: Array) -> Array:
     """Return an orthonormal basis (columns) of what a matrix maps to 0."""
     _, s, vt = np.linalg.svd(matrix)
-    rank = int((s > STEP * max(s.max(initial=0.0), 1e-300)).sum())
-    return np.asarray(vt[rank:].T)
+    return np.asarray(vt[rank_of(s) :].T)
+
+
+def rank_of(sizes: Array) -> int:
+    """Return the number of singular values that are not rounding."""
+    return int((sizes > STEP * max(sizes.max(initial=0.0), 1e-300)).sum())
 
 
 def chi_square_tail(x: float, degrees: int) -> float:

@@ -19,7 +19,7 @@ from ..cases.amounts import Amount
 from ..cases.motion import OWN_AXES as OWN_AXES
 from ..cases.motion import line_of_motion
 from ..errors import UserError
-from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE
+from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE, NO_MOMENT
 from ..mechanics.laws import Scale, margins
 from ..mechanics.solve import evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
@@ -140,10 +140,8 @@ class Problem:
     def _set_barrier(self, known: dict[str, Amount]) -> None:
         """Let a barrier, of infinite mass, rest unless its motion is given; it faces nothing."""
         if "MB" in known and np.isinf(known["MB"].value):
-            if not {"VX", "VY", "SB", "VBX", "VBY", "SBF"} & known.keys():
-                known["SB"] = Amount.exactly(0.0)
             known.setdefault("IB", known["MB"])
-            for name in ("TB", "DB", "PB", "WB"):
+            for name in ("SB", "WB", "TB", "DB", "PB"):
                 known.setdefault(name, Amount.exactly(0.0))
 
     def _set_at_rest(self, known: dict[str, Amount]) -> None:
@@ -268,6 +266,9 @@ class Problem:
         coefficients stay."""
         known = dict(self.original)
         self._set_at_rest(known)
+        if "GA" in self.known.keys() - known.keys() and not self.without_plane:
+            known.pop("MU", None)  # the plane stays across the line of motion
+            known |= {name: self.known[name] for name in ("GA", "MUP")}
         for name, amount in known.items():
             is_motion = _rule(name) in MOTION or name in (*COURSES, *FORCES)
             if is_motion and not amount.varies:
@@ -365,6 +366,7 @@ class Problem:
                 self._assume(name)
                 amount = uniform(*self._widest(name))
             self.coordinates.append(Known(name, amount, self.size(name)))
+        self.forbidden = [n for n, x in self.fixed.items() if n in RANGES and not _is_allowed(n, x)]
         self._turns_with_course = [v for v in self.facing if not self.point]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
@@ -508,6 +510,11 @@ def unwrapped(name: str, column: Array, middle: float | None) -> Array:
         sines = np.exp(1j * np.radians(column)).mean()
         middle = float(np.degrees(np.angle(sines)))
     return np.asarray(middle + (column - middle + 180.0) % 360.0 - 180.0)
+
+
+def _is_allowed(name: str, value: float) -> bool:
+    low, high = RANGES[name]
+    return low <= value <= high or value == NO_MOMENT
 
 
 def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:

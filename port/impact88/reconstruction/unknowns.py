@@ -141,9 +141,9 @@ def _solve(v: Mapping[str, Array], wanted: list[str]) -> tuple[dict[str, Array],
     speed = float(max(largest, default=0.0)) or 1.0
     mass = 1.0 / (1.0 / v["MA"] + 1.0 / v["MB"])
     sizes = np.stack([one] * 6 + [mass] * 3, 1) * speed
-    rows = _Rows(basis, v, mass)
+    rows = _Rows(basis, mass)
     used = [name for name in (*BEFORE, *AFTER, *COEFFICIENTS, "PM") if name in v]
-    matrix = np.stack([rows.of(name) for name in used], 1) * sizes[:, None]
+    matrix = np.stack([rows.row(name, v[name]) for name in used], 1) * sizes[:, None]
     right = np.stack([v[name] if name in (*BEFORE, *AFTER) else zero for name in used], 1)
     scale = np.abs(matrix).max(2, keepdims=True) + 1e-300
     u, s, vt = np.linalg.svd(matrix / scale)
@@ -157,7 +157,7 @@ def _solve(v: Mapping[str, Array], wanted: list[str]) -> tuple[dict[str, Array],
     impacts = Impacts({**bodies, **dict(zip(STATE, (state * sizes).T, strict=True))})
     found = {}
     for name in wanted:
-        gradient = rows.gradient(name, impacts) * sizes
+        gradient = rows.row(name, np.broadcast_to(impacts[name], count)) * sizes
         loose = np.abs(np.einsum("njk,nk->nj", directions, gradient)).max(1)
         determined = loose <= DETERMINED_TOL * np.abs(gradient).max(1)
         found[name] = np.where(determined, impacts[name], np.nan)
@@ -167,8 +167,8 @@ def _solve(v: Mapping[str, Array], wanted: list[str]) -> tuple[dict[str, Array],
 class _Rows:
     """Velocities and laws as rows over the state, from the impacts of its unit vectors."""
 
-    def __init__(self, basis: list[Impacts], known: Mapping[str, Array], mass: Array) -> None:
-        self.known, self.mass = known, mass
+    def __init__(self, basis: list[Impacts], mass: Array) -> None:
+        self.mass = mass
         count = len(mass)
         state = {
             name: np.stack([np.broadcast_to(b[name], count) for b in basis]) for name in MOTION
@@ -177,20 +177,10 @@ class _Rows:
         relative, _ = evaluate({**bodies, **state, "MU": 0.0}, CONTACT)
         self.columns = {name: x.T for name, x in (*state.items(), *relative.items())}
 
-    def of(self, name: str) -> Array:
-        """Return a velocity, or a law with its known coefficient."""
-        if name in COEFFICIENTS:
-            return self._law(name, self.known[name])
-        return self.columns[name]
-
-    def gradient(self, name: str, impacts: Impacts) -> Array:
-        """Return the direction in which a quantity of impacts changes."""
-        if name in COEFFICIENTS:
-            return self._law(name, np.broadcast_to(impacts[name], len(self.mass)))
-        return self.columns[name]
-
-    def _law(self, name: str, value: Array) -> Array:
-        """Return Equation 15, 16 or 18 with a coefficient."""
+    def row(self, name: str, value: Array) -> Array:
+        """Return a velocity, or Equation 15, 16 or 18 with the value of its coefficient."""
+        if name not in COEFFICIENTS:
+            return self.columns[name]
         columns, x = self.columns, value[:, None]
         if name == "E":
             return np.asarray(columns["VS"] + x * columns["gn"])

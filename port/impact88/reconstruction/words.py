@@ -166,11 +166,6 @@ def advice(result: Reconstruction) -> tuple[str, ...]:
     return tuple(sentences)
 
 
-def drivers(result: Reconstruction, name: str) -> str:
-    """Return the measured values that make a result uncertain, the largest first."""
-    return ", ".join(f"{n} {100 * x:.0f} %" for n, x in result.drivers.get(name, {}).items())
-
-
 def remarks(result: Reconstruction) -> tuple[str, ...]:
     """Return what was made of the problem, and how it was searched."""
     ended, impacts, unseen = result.search
