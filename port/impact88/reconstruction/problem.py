@@ -43,6 +43,7 @@ ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 """Ranges of coefficients that are not given (listing, lines 40 and 50)."""
+LOST = {"E": 0.0, "EM": 0.0, "MUP": PIVOT}  # coefficients that leave nothing of a velocity
 FINAL = ("SAF", "HAF", "VAX", "VAY")
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
 MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
@@ -388,8 +389,8 @@ class Problem:
     def _leaves(self, *coefficients: str) -> bool:
         """Return False if nothing is left of a relative velocity: no inverse leads back from it
         (E, EM = 0, or a pivot)."""
-        amounts = [self.known.get(name) for name in coefficients]
-        return not any(_is_zero(a) or (a and not a.varies and a.value == PIVOT) for a in amounts)
+        amounts = [(name, self.known.get(name)) for name in coefficients]
+        return not any(a and not a.varies and a.value == LOST[name] for name, a in amounts)
 
     def _has_no(self, coefficient: str) -> bool:
         return self.point and coefficient == "EM"
