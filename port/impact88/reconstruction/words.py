@@ -55,7 +55,8 @@ def question(result: Reconstruction) -> str:
     if measured:
         parts.append(f"{_join(measured)} within limits")
     parts.append(f"{exact} exact value{'s' * (exact != 1)}")
-    return f"{_join(asked) if asked else 'whether they agree'}, from {' and '.join(parts)}"
+    open_question = "whether they agree" if result.evidence.redundancy else "the impact"
+    return f"{_join(asked) if asked else open_question}, from {' and '.join(parts)}"
 
 
 def _is_asked(result: Reconstruction, speed: str) -> bool:
@@ -170,7 +171,7 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
     """Return what was made of the problem, and how it was searched."""
     ended, impacts, unseen = result.search
     lines = [text for text in result.remarks if text != OUTSIDE]
-    if impacts:
+    if impacts and ended > 1:
         lines.append(
             f"{ended} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected number "
             f"not seen {unseen:.2g}"

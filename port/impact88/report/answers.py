@@ -501,6 +501,8 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
 
 def _checks(case: Case, impact: Reconstruction) -> tuple[Check, ...]:
     """Return the values known with tolerances beside the others."""
+    if not impact.evidence.redundancy:
+        return ()
     checks = []
     for name, test in impact.tests.items():
         shown = [
