@@ -110,6 +110,15 @@ class TestMistakes:
         assert cause.edit == "MB multiplied by 32.174, as read (weight for mass, in ft and s)"
 
     @long
+    def test_the_listings_rounding_down_is_named(self) -> None:
+        theirs = {}
+        for name, column in impact88.solve(SCENE, VELOCITIES).items():
+            unit = 1e4 if name in ("WAF", "WBF") else 1e3
+            theirs[name] = np.char.mod("%.4f", np.floor(column * unit) / unit)
+        (cause,) = impact88.compare({**SCENE, **theirs}).causes
+        assert "rounded down, as lines 730-760" in cause.edit
+
+    @long
     def test_sine_and_cosine_exchanged_are_named(self) -> None:
         theirs = impact88.solve({**SCENE, "PA": 90 - SCENE["PA"] - 2 * SCENE["TA"]}, VELOCITIES)
         (cause,) = impact88.compare({**SCENE, **theirs}).causes
