@@ -1,5 +1,6 @@
 """Checks of a change, `nox -f .ci/noxfile.py`, and of a release, `... -t release`."""
 
+import os
 import re
 import shutil
 import tomllib
@@ -12,6 +13,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 PYTHONS = [c.rpartition(" ")[2] for c in PROJECT["classifiers"] if ":: Python :: 3." in c]
 CORE = ["tests/apple", "tests/program", "tests/mechanics", "tests/cases", "tests/tables"]
 
+os.chdir(ROOT)  # nox starts in the folder of this file
 nox.options.sessions = ["tests", "lint", "docs"]
 nox.options.reuse_existing_virtualenvs = True
 nox.options.error_on_missing_interpreters = False
