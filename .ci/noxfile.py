@@ -1,6 +1,5 @@
 """Checks of a change, `nox -f .ci/noxfile.py`, and of a release, `... -t release`."""
 
-import os
 import re
 import shutil
 import tomllib
@@ -13,7 +12,6 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 PYTHONS = [c.rpartition(" ")[2] for c in PROJECT["classifiers"] if ":: Python :: 3." in c]
 CORE = ["tests/apple", "tests/program", "tests/mechanics", "tests/cases", "tests/tables"]
 
-os.chdir(ROOT)  # nox starts in the folder of this file
 nox.options.sessions = ["tests", "lint", "docs"]
 nox.options.reuse_existing_virtualenvs = True
 nox.options.error_on_missing_interpreters = False
@@ -27,6 +25,7 @@ def requirements(*extras: str) -> list[str]:
 @nox.session
 def tests(session: nox.Session) -> None:
     """Run all tests."""
+    session.chdir(ROOT)
     session.install("-e", ".[test]")
     session.run("pytest", *session.posargs)
 
@@ -34,6 +33,7 @@ def tests(session: nox.Session) -> None:
 @nox.session
 def lint(session: nox.Session) -> None:
     """Check style, types and the order of imports."""
+    session.chdir(ROOT)
     session.install("-e", ".", *requirements("test", "lint"))
     session.run("ruff", "check", "port", "tests", ".ci")
     session.run("ruff", "format", "--check", "port", "tests", ".ci")
@@ -44,6 +44,7 @@ def lint(session: nox.Session) -> None:
 @nox.session
 def docs(session: nox.Session) -> None:
     """Build the guide and the reference."""
+    session.chdir(ROOT)
     session.install("-e", ".[docs]")
     session.run("sphinx-build", "-W", "--keep-going", "--quiet", "port/docs", "build/docs")
 
@@ -51,6 +52,7 @@ def docs(session: nox.Session) -> None:
 @nox.session(tags=["release"], python=PYTHONS)
 def pythons(session: nox.Session) -> None:
     """Run the tests on every Python that pyproject.toml promises."""
+    session.chdir(ROOT)
     session.install(".[test]")
     session.run("pytest", *session.posargs)
 
@@ -58,6 +60,7 @@ def pythons(session: nox.Session) -> None:
 @nox.session(tags=["release"])
 def pure(session: nox.Session) -> None:
     """Run the tests of what has a compiled part, installed without a compiler."""
+    session.chdir(ROOT)
     shutil.rmtree("build/lib", ignore_errors=True)
     session.install("--no-cache-dir", ".[test]", env={"CC": "false"})
     session.run("python", "-c", "import impact88; assert impact88.accelerated is None")
@@ -67,6 +70,7 @@ def pure(session: nox.Session) -> None:
 @nox.session(tags=["release"])
 def lowest(session: nox.Session) -> None:
     """Run the tests with the lowest versions that pyproject.toml promises."""
+    session.chdir(ROOT)
     lines = [*PROJECT["dependencies"], *requirements("test")]
     pins = [re.sub(r">=([\d.]+)$", r"==\1.*", line) for line in lines]
     session.install(*pins)
@@ -77,6 +81,7 @@ def lowest(session: nox.Session) -> None:
 @nox.session(tags=["release"])
 def sanitized(session: nox.Session) -> None:
     """Run the tests of the compiled part with the address and undefined sanitizers."""
+    session.chdir(ROOT)
     flags = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined"
     session.install("-e", ".[test]", env={"CFLAGS": flags, "LDFLAGS": flags})
     runtime = session.run("gcc", "-print-file-name=libasan.so", external=True, silent=True)
@@ -87,6 +92,7 @@ def sanitized(session: nox.Session) -> None:
 @nox.session(tags=["release"])
 def web(session: nox.Session) -> None:
     """Drive the web page in headless Chromium."""
+    session.chdir(ROOT)
     session.install("-e", ".[test,web,browser]")
     session.run("pytest", "-m", "browser", "tests/web")
 
@@ -94,6 +100,7 @@ def web(session: nox.Session) -> None:
 @nox.session(tags=["release"])
 def wheel(session: nox.Session) -> None:
     """Build the wheel twice, to the same bytes, and try it."""
+    session.chdir(ROOT)
     session.install("build")
     wheels = []
     for folder in ("dist/first", "dist/second"):
