@@ -61,8 +61,9 @@ def test_a_number_ends_where_it_no_longer_is_one():
 STEP = 2.0**-31
 """What MUL10 or DIV10 may be off, relatively: 2^-32 for rounding to 32 bits, and as much again for
 the quotient cut after 33."""
-WRITING = 39 * STEP + 0.5e-8 + 1e-9
-"""Up to 39 steps bring a number to nine digits; half a unit of the ninth; 999,999,999 is cut."""
+WRITING = 41 * STEP + 0.5e-8 + 1e-9
+"""Up to 39 steps bring a number to nine digits, after a multiplication by a billion and before the
+addition of a half, which round as well; half a unit of the ninth; 999,999,999 is cut."""
 READING = 47 * STEP
 """Nine digits are exact; up to 47 steps, for E-39 and eight decimals, make the number of them."""
 
