@@ -29,7 +29,7 @@ PROGRAMS = [
 ]
 FUZZ = [
     case
-    for name in ("fuzz", "corners/fuzz", "corners/witnessed")
+    for name in ("fuzz", "corners/fuzz", "corners/keys")
     if (captures.folder() / f"{name}.jsonl.gz").exists()
     for case in captures.jsonl(name)
 ]
@@ -39,7 +39,7 @@ Report = tuple[int, dict[str, str], list[str] | None]
 
 def changes(reports: list[Report]) -> list[Report]:
     """The reports whose variables differ from the report before: a line that only decides or prints
-    is left by port and emulator at different moments, but every value is born in one line."""
+    is left by port and emulator at different moments, but every value is assigned in one line."""
     kept: list[Report] = []
     state: tuple[Any, Any] = ({}, None)
     for line, reals, data in reports:

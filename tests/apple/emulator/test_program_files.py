@@ -32,7 +32,7 @@ HARD = (
     "goto_computed",  # its saved text could be one long line of LIST's
     "misc_clear",  # DATA with a blank, and no line begins with a keyword
     "print_question_mark",
-    "witnessed_034",  # a row that begins with a number and a colon
+    "keys_034",  # a row that begins with a number and a colon
 )
 
 
