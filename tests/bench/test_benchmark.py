@@ -59,7 +59,8 @@ def test_measurements_are_written_on_a_quiet_computer_only(
     monkeypatch.setattr(benchmark, "computer", lambda: where)
     monkeypatch.setattr(benchmark, "METHODS", benchmark.METHODS[1:3])
     page = tmp_path / "measurements.md"
-    words = ["bench", "--quick", "--scenes", "3", "--json", "--measurements", str(page)]
+    monkeypatch.setattr("impact88.cli.bench.QUICK_SCENES", 3)
+    words = ["bench", "--quick", "--json", "--measurements", str(page)]
     assert main(words) == status
     output = capsys.readouterr()
     assert page.exists() == (status == 0)

@@ -95,10 +95,8 @@ def test_what_is_no_value_of_a_barrier(name, value):
         barrier({name: value})
 
 
-def test_equation_19_and_its_inverse():
+def test_losses_and_speeds_for_equation_19():
     known = {"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667}
-    changes = deltav.delta_v({**known, "LOSS": 37.4})
-    assert deltav.loss_of_change({**known, "DVA": changes["DVA"]}) == pytest.approx(37.4)
     energy = 0.374 * (96 * 36.667**2 + 145 * 58.667**2) / 2
     assert deltav.loss_of_energy({**known, "EL": energy}) == pytest.approx(37.4)
     assert deltav.initial_velocity(5.0, -3.0, 4.0) == pytest.approx(-6.0)

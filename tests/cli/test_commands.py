@@ -35,7 +35,6 @@ STATUSES = """
 0 run crash.toml
 0 run rear.toml
 0 run --sample 1 --arithmetic float64
-0 run --sample 1 --no-dos --raw
 0 run --sample 1 --set MA=0
 1 run --sample 1 --set IA=0
 0 solve crash.toml
@@ -55,7 +54,7 @@ STATUSES = """
 1 verify --brief printout.txt altered.txt
 0 verify --json printout.txt
 0 oracle scenes.jsonl
-0 oracle --vectors 3
+0 oracle --kit kit
 0 basic hello.bas
 1 basic broken.bas
 0 chapter example
@@ -141,12 +140,6 @@ def test_bad_rows_are_named_and_the_others_solved(folder: Path) -> None:
     assert "line 3: MU = 'much'" in outcome.err
 
 
-def test_write_scene_gives_a_complete_scene(folder: Path) -> None:
-    command("solve", "rear.toml", "--write-scene", "found.toml", folder=folder)
-    answer = command("solve", "found.toml", "--outputs", "DVB", "--json", folder=folder)
-    assert json.loads(answer.out)["found"][0]["text"] == "3.645"
-
-
 def test_output_files_are_whole_or_not_written(folder: Path) -> None:
     target = folder / "page.txt"
     target.write_text("before", "utf-8")
@@ -174,10 +167,12 @@ def test_the_prompt_lists_retypes_and_runs() -> None:
 
 
 def test_the_prompt_keeps_programs(folder: Path) -> None:
-    outcome = command("basic", input="10 PRINT 2\nSAVE hello.bas\nSAVE new.bas\n", folder=folder)
-    assert "hello.bas: was neither loaded nor saved" in outcome.err
+    typed = "10 PRINT 2\nSAVE hello.bas\nSAVE new.bas\nLOAD hello.bas\nLIST\n"
+    outcome = command("basic", input=typed, folder=folder)
+    assert "hello.bas: exists; expected a new name" in outcome.err
+    assert '20  PRINT "HELLO, "N$' in outcome.out
     assert (folder / "hello.bas").read_text() == FILES["hello.bas"]
-    assert "10" in (folder / "new.bas").read_text()
+    assert "10 PRINT 2\n" in (folder / "new.bas").read_text()
 
 
 def process(*words: str, **options: object) -> subprocess.Popen[str]:

@@ -50,8 +50,8 @@ run --sample 1 --set MU=much
 run --sample 1 --set XX=1
 run --sample 1 --set MU=1 --set MU=2
 run --sample 1 --set MU=1e999
-run --sample 1 --slot 3
-run --sample 1 --slot 9
+run --sample 1 --slot 1
+run --json
 run --sample 1 --listing text.bas
 run --sample 1 --listing nothing.bas
 run --sample 1 --arithmetic decimal
@@ -101,14 +101,16 @@ compare nothing.csv
 compare empty.csv
 compare table.csv --rtol 5
 basic text.bas
+basic nothing.bas
 basic --prompt
-basic --max-statements 0
 selfcheck --rom nothing.rom
 chapter
 chapter nonsense
 chapter colinear
+chapter delta-v --set MA=3
+chapter delta-v --set LOSS=101
 bench --scenes 0
-web --port 99999999
+web --port 8088
 bounds few.toml
 reconstruct few.toml
 figure scene

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import re
 from importlib.resources import files
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from commands import command
 
+from impact88.apple.emulator.emulator import Applesoft
 from impact88.program.run import run
 from impact88.program.scene import sample
 
@@ -150,23 +149,21 @@ def test_printed_numbers_keep_the_last_two_digits_but_for_two(errata: Errata) ->
     ("line", "shown"),
     [
         (340, "UX= -29.04 UY= 0 WA= 0 XA= 0 YA= 0\n"),
-        (700, "?SYNTAX ERROR\a IN 700\n"),
-        (710, "?SYNTAX ERROR\a IN 710\n"),
+        (700, "?SYNTAX ERROR\a IN 700"),
+        (710, "?SYNTAX ERROR\a IN 710"),
         (730, "(XA=-8.78 YA= 15.91\n"),
         (740, "(XB=-8.09 YB= 17.35\n"),
     ],
 )
-def test_what_a_line_as_printed_does(line: int, shown: str, errata: Errata, tmp_path: Path) -> None:
+def test_what_a_line_as_printed_does(line: int, shown: str, errata: Errata) -> None:
     """The evidence for the character emendations: what Applesoft makes of each line without it."""
     without = [row for row in errata.characters if row[0] != line]
     assert len(without) == len(errata.characters) - 1
-    program = tmp_path / "as-printed.bas"
-    program.write_text(
-        restore(text("listing-as-printed.txt"), errata._replace(characters=without)),
-        encoding="ascii",
-    )
-    printout = command("basic", str(program), "--raw", input="-29.04,0,0\n14.52,25.15,0\n").out
-    assert shown in printout
+    apple = Applesoft(dos=True)
+    apple.load(restore(text("listing-as-printed.txt"), errata._replace(characters=without)))
+    apple.feed("-29.04,0,0", "14.52,25.15,0")
+    apple.run()
+    assert shown in apple.take_output()
     assert shown not in run(sample(1)).printout
 
 

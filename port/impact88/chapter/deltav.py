@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError
-from ..names import missing
 from .columns import Array, read_columns
 
 AS_USED = 2 / 3  # factor of Equation 19 in Table 2 and Section VII
@@ -63,23 +62,6 @@ def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Arra
         return {"DVA": change / a, "DVB": change / b}
 
 
-def loss_of_change(known: Mapping[str, float], factor: float = AS_USED) -> float:
-    """Return the LOSS in percent that a velocity change implies (Equation 19 inverted).
-
-    Parameters
-    ----------
-    known : mapping of str to float
-        MA, MB, SA, SB and DVA or DVB.
-    factor : float, default 2/3
-        The factor of Equation 19.
-    """
-    vehicle = next((v for v in "AB" if f"DV{v}" in known), None)
-    if vehicle is None:
-        raise UserError(missing(["DVA"]))
-    whole = float(delta_v({**known, "LOSS": 100.0}, factor)[f"DV{vehicle}"])
-    return 100.0 * (float(known[f"DV{vehicle}"]) / whole) ** 2 if whole else math.nan
-
-
 def loss_of_energy(known: Mapping[str, float]) -> float:
     """Return the LOSS in percent for an energy loss EL of MA and MB at speeds SA and SB, without
     spins."""
@@ -116,37 +98,3 @@ def initial_velocity(change: float, along: float, across: float) -> float:
         )
     root = math.sqrt(square)
     return max((along - root, along + root), key=abs)
-
-
-def speeds_before(
-    known: Mapping[str, float], loss: float, factor: float = AS_USED
-) -> dict[str, float]:
-    """Return UX and VY of vehicles that approached along x and along y (Section VII; Equations 19
-    to 21), with the DVA and DVB used.
-
-    Parameters
-    ----------
-    known : mapping of str to float
-        MA, MB, VAX, VAY, VBX, VBY, and SA and SB if they are known; by default Equations 13 and 14
-        give the speeds that Equation 19 takes.
-    loss : float
-        Kinetic energy lost, in percent.
-    factor : float, default 2/3
-        The factor of Equation 19.
-    """
-    names = ("MA", "MB", "VAX", "VAY", "VBX", "VBY")
-    ma, mb, vax, vay, vbx, vby = (float(x) for x in read_columns(known, names))
-    speed_a = known.get("SA", abs(vax + mb / ma * vbx))
-    speed_b = known.get("SB", abs(vby + ma / mb * vay))
-    given = {"MA": ma, "MB": mb, "SA": speed_a, "SB": speed_b, "LOSS": loss}
-    changes = {name: float(x) for name, x in delta_v(given, factor).items()}
-    ux = initial_velocity(changes["DVA"], vax, vay)
-    vy = initial_velocity(changes["DVB"], vby, vbx)
-    return {"UX": ux, "VY": vy, **changes}
-
-
-def describe(factor: float) -> str:
-    """Return which Equation 19 this is, in one line."""
-    if factor == AS_PRINTED:
-        return "Equation 19 as printed, without the factor 2/3 that Table 2 was computed with"
-    return f"Equation 19 with the factor {factor:.4g} (2/3 is not printed, but Table 2 has it)"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from ..layout import paragraph, table
 from .example import steps
-from .staged import COLUMNS_2, collisions, comparison, emendations
+from .staged import COLUMNS_2, collisions, comparison
 from .validation import checks, medians
 
 
@@ -26,15 +26,6 @@ def comparison_lines() -> Iterator[str]:
     for cell in cells:
         if not cell.agrees:
             yield from paragraph(f"{cell.collision}, {cell.column}: {cell.explanation}", "!", 2)
-
-
-def cell_lines() -> Iterator[str]:
-    """Yield the cells that were emended, moved or lost, with the evidence."""
-    for cell in emendations():
-        change = f"{cell.printed or 'blank'} -> {cell.emended or 'no value'}"
-        place = "the row" if cell.column == "*" else cell.column
-        yield f"Table {cell.table}, {cell.row}, {place}: {cell.kind}: {change}"
-        yield from paragraph(cell.evidence, "", 4)
 
 
 def table_lines(number: int) -> Iterator[str]:

@@ -14,8 +14,8 @@ COMMANDS = {
     "chapter": "the chapter's other problems: colinear, barrier, delta-v, staged, example",
     "bench": "measure run time against error on this computer",
 }
-"""One line of help for each command, in the order of the overview. `impact88.cli.NAME` has its
-docstring as help, and the functions ``declare`` and ``main``."""
+"""One line of help for each command, in the order of the overview. `impact88.cli.NAME` has the
+command's help as its docstring, its ``OPTIONS``, and its function ``main``."""
 
 GONE = {
     "bounds": "impact88 solve FILE.toml, which gives intervals where the file has tolerances",

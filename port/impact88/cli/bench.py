@@ -10,27 +10,19 @@ those of the final velocities against 50 digits (needs pip install 'impact88[ora
 from __future__ import annotations
 
 from ..errors import library
-from ..layout import table
-from . import options
-from .output import print_json, progress
+from .options import JSON, OUTPUT, Args, flag, output_file
+from .output import progress, show
 
 QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT = 100, 3, 0.05
+OPTIONS = (
+    flag("--quick", "fewer scenes and repeats"),
+    output_file("--measurements", "FILE", "write a Markdown page, if the computer is quiet"),
+    JSON,
+    OUTPUT,
+)
 
 
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    parser.add_argument("--quick", action="store_true", help="fewer scenes and repeats")
-    parser.add_argument(
-        "--scenes", type=options.whole_number(1, 10**6), metavar="N", help="scenes of a population"
-    )
-    parser.add_argument(
-        "--measurements", type=options.OutputPath, metavar="FILE", help="write a Markdown page"
-    )
-    options.add_json(parser)
-    options.add_output(parser)
-
-
-def main(args: options.Args) -> None:
+def main(args: Args) -> None:
     """Measure errors and run times."""
     library("mpmath", "oracle", "the reference")
     from ..bench import benchmark as bench
@@ -38,29 +30,20 @@ def main(args: options.Args) -> None:
     where = bench.computer()
     if args.measurements:
         bench.check_quiet(where)
-    repeats, effort = (QUICK_REPEATS, QUICK_EFFORT) if args.quick else (bench.REPEATS, 1.0)
-    scenes = args.scenes or (QUICK_SCENES if args.quick else bench.ERROR_SCENES)
+    scenes, repeats, effort = bench.ERROR_SCENES, bench.REPEATS, 1.0
+    if args.quick:
+        scenes, repeats, effort = QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT
     done, steps = 0, bench.count_steps(repeats)
-    with progress("bench") as meter:
+    with progress("bench") as update:
 
         def step() -> None:
             nonlocal done
             done += 1
-            meter.update(done, done / steps)
+            update(done, done / steps)
 
         rows = bench.measure(step, scenes, repeats, effort)
+    page = bench.markdown(rows, where)
     if args.measurements:
-        bench.write_measurements(args.measurements, bench.markdown(rows, where))
-    if args.json:
-        print_json("bench", {"computer": where, "measurements": [row._asdict() for row in rows]})
-        return
-    print(", ".join(f"{key} {value}" for key, value in where.items()))
-    heads = ["scenes", "method", "ns a scene", "median", "99 %", "largest", "no answer"]
-    cells = [
-        [row.population, row.method, f"{1e9 * row.seconds:,.0f}"]
-        + [f"{x:.1e}" for x in (row.median, row.percentile_99, row.largest)]
-        + [str(row.unanswered)]
-        for row in rows
-    ]
-    print("\n".join(table([heads, *cells], left=(0, 1))))
-    print("relative error of the final velocities; CPU time on one core")
+        bench.write_measurements(args.measurements, page)
+    record = {"computer": where, "measurements": [row._asdict() for row in rows]}
+    show(args.json, "bench", record, [page])

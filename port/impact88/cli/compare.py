@@ -16,21 +16,19 @@ from __future__ import annotations
 from ..files import display_name
 from ..names import RESULTS, SCENE
 from . import options
-from .output import print_json
+from .options import flag, option
+from .output import show
 
-
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    parser.add_argument("theirs", type=options.InputPath, metavar="TABLE", help="their results")
-    options.add_set(parser, "a value of all rows")
-    parser.add_argument("--units", choices=options.SYSTEMS, help="units of the table")
-    parser.add_argument("--no-causes", action="store_true", help="look for no mistakes")
-    parser.add_argument("--kit", metavar="ID or FOLDER", help="judge answers to this kit")
-    parser.add_argument(
-        "--junit", type=options.OutputPath, metavar="FILE", help="write a JUnit report"
-    )
-    options.add_json(parser)
-    options.add_output(parser)
+OPTIONS = (
+    option("theirs", type=options.InputPath, metavar="TABLE", help="their results"),
+    options.texts("--set", "NAME=VALUE", "a value of all rows"),
+    options.UNITS,
+    flag("--no-causes", "look for no mistakes"),
+    option("--kit", metavar="ID or FOLDER", help="judge answers to this kit"),
+    options.output_file("--junit", "FILE", "write a JUnit report"),
+    options.JSON,
+    options.OUTPUT,
+)
 
 
 def main(args: options.Args) -> int:
@@ -41,20 +39,18 @@ def main(args: options.Args) -> int:
     from ..comparison.words import as_json, as_junit, as_text
 
     view = View.of(units=args.units)
-    case = Case.of(options.changes_of(args), "--set", view)
+    changes = options.changes_of(args)
+    numbers = Case.of(changes, "--set", view).numbers
     names = (*SCENE, *RESULTS) if args.units else ()
     comparison = compare(
         args.theirs,
         kit=args.kit,
-        values={name: case.numbers[name] for name in options.changes_of(args)},
+        values={name: numbers[name] for name in changes},
         factors={name: float(view.map(name)[0]) for name in names if name != "STATUS"},
         causes=not args.no_causes,
     )
     if args.junit:
         with options.printing_to(args.junit):
             print(as_junit(comparison, display_name(args.theirs)), end="")
-    if args.json:
-        print_json("compare", as_json(comparison))
-    else:
-        print(as_text(comparison))
+    show(args.json, "compare", as_json(comparison), [as_text(comparison)])
     return int(not comparison.passed)

@@ -16,7 +16,7 @@ from importlib import import_module
 
 from ..errors import UserError, note, one_line
 from ..files import ESCAPED
-from ..names import did_you_mean
+from ..names import check_names, did_you_mean
 from ..version import __version__
 from . import COMMANDS, GONE
 from .options import check_files, printing_to
@@ -30,6 +30,7 @@ INTERNAL = 3
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 COLLECTION_THRESHOLD = 10_000  # allocations between garbage collections; Python's 700 costs 10 %
+HELP = ("-h", "--help")
 OVERVIEW = """\
 usage: impact88 COMMAND [options]
 
@@ -43,20 +44,11 @@ exit status: 0 done, 1 adverse result, 2 unusable input, 3 internal error"""
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are UserErrors, and whose help begins with the command's examples."""
+    """A parser whose errors are UserErrors."""
 
     def error(self, message: str) -> NoReturn:
         """Raise UserError."""
         raise UserError(f"{message} (see {self.prog.replace('impact88', 'impact88 help')})")
-
-    def format_help(self) -> str:
-        """Return examples and explanations, then usage and options."""
-        examples, self.description = self.description, None
-        return f"{examples}\n\n{super().format_help()}"
-
-    def print_help(self, file: object = None) -> None:
-        """Print the help; an error of writing is an error."""
-        print(self.format_help(), end="")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -76,13 +68,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments = sys.argv[1:]
         gc.set_threshold(COLLECTION_THRESHOLD)
     command = next((word for word in arguments[:2] if word in COMMANDS), None)
-    debug = os.environ.get("IMPACT88_DEBUG") == "1"
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # starting its threads takes 10 ms
     try:
         _prepare_streams()
-        with warnings.catch_warnings():
-            if not sys.warnoptions and not debug:
-                warnings.simplefilter("ignore")  # those of libraries
+        with warnings.catch_warnings(action="ignore"):  # those of libraries
             status = _dispatch(arguments)
         sys.stdout.flush()
         return status
@@ -97,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if isinstance(error, OSError):
                 _discard_output()
             return UNUSABLE
-        _report_internal(command, error, debug)
+        note(command, _internal_error(error))
         return INTERNAL
 
 
@@ -106,7 +95,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
     name, *words = arguments or ["help"]
     if name == "help" and words:
         name, *words = [*words, "--help"]
-    if name in ("-h", "--help", "help"):
+    if name in (*HELP, "help"):
         lines = "\n".join(f"  {command:<11}{meaning}" for command, meaning in COMMANDS.items())
         print(OVERVIEW.format(commands=lines))
         return 0 if arguments else UNUSABLE
@@ -115,48 +104,35 @@ def _dispatch(arguments: Sequence[str]) -> int:
         return 0
     if name in GONE:
         raise UserError(f"{name} is not a command any more; use {GONE[name]}")
-    if name not in COMMANDS:
-        hint = did_you_mean(name, (*COMMANDS, *GONE))
-        raise UserError(
-            f"{one_line(name, 60)!r} is not a command{hint} (expected {' '.join(COMMANDS)})"
-        )
+    check_names([name], COMMANDS, "command")
     return _run(name, words)
 
 
 def _run(name: str, words: Sequence[str]) -> int:
-    """Parse a command's words and run it."""
+    """Run a command, or print its help."""
     module = import_module(f".{name}", __package__)
-    parser = Parser(f"impact88 {name}", description=module.__doc__, allow_abbrev=False)
-    module.declare(parser)
-    try:
-        args = parser.parse_args(words)
-    except SystemExit:  # the help is printed
+    parser = Parser(f"impact88 {name}", allow_abbrev=False)
+    for names, keywords in module.OPTIONS:
+        parser.add_argument(*names, **keywords)
+    if {*HELP} & {*words}:
+        print(f"{module.__doc__}\n\n{parser.format_help()}", end="")
         return 0
+    args, unknown = parser.parse_known_args(words)
+    if unknown:
+        options = [option for names, _ in module.OPTIONS for option in names]
+        hint = did_you_mean(unknown[0].partition("=")[0], options)
+        parser.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     check_files(args)
-    with suppress(NothingWritten), printing_to(getattr(args, "output", None) or "-"):
-        status = int(module.main(args) or 0)
-        if status == UNUSABLE:
-            raise NothingWritten
-    return status
-
-
-class NothingWritten(Exception):
-    """The input was unusable: the output file stays as it is."""
+    with printing_to(getattr(args, "output", None) or "-"):
+        return int(module.main(args) or 0)
 
 
 def _prepare_streams() -> None:
-    """Make the output UTF-8 whatever the locale, and replace closed streams. Raises UserError if
-    standard output is closed."""
-    is_closed = sys.stdout is None
-    sys.stdin = sys.stdin or open(os.devnull)  # noqa: SIM115
-    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
-    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115
-    if is_closed:
-        raise UserError("standard output is closed; expected somewhere to print the result")
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(encoding="utf-8", errors=ESCAPED)
-    if hasattr(sys.stderr, "reconfigure"):
-        sys.stderr.reconfigure(errors=ESCAPED)
+    """Make the output UTF-8 whatever the locale. Raises UserError if a stream is closed."""
+    if None in (sys.stdin, sys.stdout, sys.stderr):
+        raise UserError("a standard stream is closed; expected input, output and errors")
+    sys.stdout.reconfigure(encoding="utf-8", errors=ESCAPED)  # type: ignore[union-attr]
+    sys.stderr.reconfigure(errors=ESCAPED)  # type: ignore[union-attr]
 
 
 def _discard_output() -> None:
@@ -165,31 +141,26 @@ def _discard_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _reason(error: Exception) -> str | None:
-    """Return the message for an error of the input or the system; None for an internal error."""
+def _reason(error: Exception) -> str:
+    """Return the message for an error of the input or the system; "" for an internal error."""
     if isinstance(error, UserError):
         return str(error)
     if isinstance(error, OSError):
         place = one_line(str(error.filename)) if error.filename else "standard output"
         return f"{place}: {error.strerror or error}"
-    if isinstance(error, ModuleNotFoundError):
-        package = (error.name or "").partition(".")[0]
-        if package in ("", "impact88"):
-            return None
-        return f"{package} is not installed; expected: pip install {package}"
     if isinstance(error, RecursionError | MemoryError):
         return "the input is too large or nested too deeply; expected a smaller one"
-    return None
+    return ""
 
 
-def _report_internal(command: str | None, error: Exception, debug: bool) -> None:
-    """Print an internal error and its place in one line; the traceback on request."""
+def _internal_error(error: Exception) -> str:
+    """Return an internal error and its place in one line; print the traceback on request."""
     import traceback
 
-    frame = traceback.extract_tb(error.__traceback__)[-1]
-    if debug:
+    if os.environ.get("IMPACT88_DEBUG") == "1":
         traceback.print_exception(error)
-    advice = "" if debug else " (IMPACT88_DEBUG=1 prints the traceback)"
-    place = f"{os.path.basename(frame.filename)}:{frame.lineno}"
-    message = one_line(f"{type(error).__name__}: {error}", 200)
-    note(command, f"internal error; please report it: {message} at {place}{advice}")
+    *_, frame = traceback.extract_tb(error.__traceback__)
+    message = (
+        f"{type(error).__name__}: {error} at {os.path.basename(frame.filename)}:{frame.lineno}"
+    )
+    return f"internal error; please report it: {message} (IMPACT88_DEBUG=1 prints the traceback)"

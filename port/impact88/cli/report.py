@@ -13,23 +13,18 @@ exit status: 0 written; 1 written, but no impact that physics allows agrees; 2 b
 from __future__ import annotations
 
 from ..errors import UserError
-from . import options
+from .options import CASE, TARGET, Args, case_of
+
+OPTIONS = (*CASE, TARGET)
 
 
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    options.add_case(parser)
-    options.add_target(parser)
-    options.add_seed(parser)
-
-
-def main(args: options.Args) -> int:
+def main(args: Args) -> int:
     """Write a page or a drawing."""
     from ..report.answers import ask
     from ..report.casepage import ENDINGS, write
 
     if not args.target.lower().endswith(ENDINGS):
         raise UserError(f"expected a name that ends in {', '.join(ENDINGS)}", f"-o {args.target}")
-    answer = ask(options.case_of(args), seed=args.seed)
+    answer = ask(case_of(args))
     write(answer, args.target)
     return int(not answer.possible)

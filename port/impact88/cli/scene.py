@@ -19,24 +19,19 @@ from __future__ import annotations
 
 from ..cases.scenefile import SIGNS, TEMPLATES, template
 from ..errors import UserError
-from . import options
+from .options import CASE, OUTPUT, Args, case_of
 
 __doc__ = (__doc__ or "").format(
     kinds="\n".join(f"  {name:<14}{kind.title}" for name, kind in TEMPLATES.items()), signs=SIGNS
 )
+OPTIONS = (*CASE, OUTPUT)
 
 
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    options.add_case(parser, "KIND or FILE.toml")
-    options.add_output(parser)
-
-
-def main(args: options.Args) -> None:
+def main(args: Args) -> None:
     """Print a scene file."""
     if args.file in TEMPLATES or not (args.file or args.sample):
         if args.sample or args.set:
             raise UserError("a template takes neither --sample nor --set; expected a FILE.toml")
         print(template(args.file or "planar", args.units or "us"), end="")
     else:
-        print(options.case_of(args).toml(), end="")
+        print(case_of(args).toml(), end="")

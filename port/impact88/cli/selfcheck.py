@@ -9,28 +9,21 @@ exit status: 0 everything is as captured; 1 something is not; 2 bad input"""
 
 from __future__ import annotations
 
-from . import options
-from .output import print_json, progress
+from .options import JSON, OUTPUT, Args
+from .output import progress, show
+
+OPTIONS = (JSON, OUTPUT)
 
 
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    options.add_json(parser)
-    options.add_output(parser)
-
-
-def main(args: options.Args) -> int:
+def main(args: Args) -> int:
     """Check the installation."""
     from ..comparison import selfcheck
 
     results = []
-    with progress("selfcheck") as meter:
+    with progress("selfcheck") as update:
         for check in selfcheck.checks():
             results.append(check)
-            meter.update(len(results))
+            update(len(results), None)
     record = selfcheck.record(results)
-    if args.json:
-        print_json("selfcheck", record, indent=2)
-    else:
-        print(selfcheck.as_text(results))
+    show(args.json, "selfcheck", record, [selfcheck.as_text(results)])
     return int(not record["passed"])

@@ -21,121 +21,91 @@ from __future__ import annotations
 from ..errors import UserError
 from ..files import display_name
 from ..names import RESULTS
-from . import options
-from .answers import answer_lines
-from .output import print_json, progress, say
+from .options import (
+    CASE,
+    JSON,
+    TARGET,
+    Args,
+    case_of,
+    changes_of,
+    choice,
+    flag,
+    input_file,
+    names_of,
+    option,
+    output_file,
+    pairs_of,
+    printing_to,
+    texts,
+    view_of,
+)
+from .output import progress, say
 
 FORMATS = ("csv", "jsonl", "parquet", "xlsx")
-
-
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    options.add_case(parser, "FILE")
-    options.add_names(parser, "--outputs", "the results wanted")
-    parser.add_argument("--full", action="store_true", help="every result of FILE.toml")
-    options.add_json(parser)
-    parser.add_argument(
-        "--write-scene",
-        type=options.OutputPath,
-        metavar="FILE",
-        help="write the impact found as a complete FILE.toml",
-    )
-    options.add_seed(parser)
-    options.add_target(parser)
-    table = parser.add_argument_group("tables")
-    table.add_argument(
-        "--sweep",
-        action="append",
-        default=[],
-        metavar="NAME=LOW:HIGH:COUNT",
-        help="make a table of FILE.toml, in which a value runs through a range",
-    )
-    table.add_argument(
-        "--arithmetic",
-        choices=("float64", "applesoft"),
-        help="double precision (default), or the 1988 program's",
-    )
-    table.add_argument(
-        "--scene",
-        type=options.InputPath,
-        metavar="FILE.toml",
-        help="values for the columns that the table lacks",
-    )
-    table.add_argument("--results-only", action="store_true", help="leave the scene's columns out")
-    table.add_argument(
-        "--errors", type=options.OutputPath, metavar="FILE", help="write all bad rows here (CSV)"
-    )
-    table.add_argument("--from", dest="source", choices=("toml", *FORMATS), help="format of FILE")
-    table.add_argument("--to", choices=FORMATS, help="format of the table to write")
-    table.add_argument("--encoding", metavar="NAME", help="of CSV that is not UTF-8: cp1252")
-
-
-def main(args: options.Args) -> int:
-    """Answer a collision, or solve a table."""
-    is_case = args.sample or args.source == "toml" or (args.file or "").lower().endswith(".toml")
-    if args.file and not is_case:
-        return _solve_table(args)
-    if args.sweep or args.arithmetic or (args.file and args.target.lower().endswith(TABLES)):
-        return _solve_table(args)
-    from ..report.answers import ALL, ask, scene_case
-
-    case = options.case_of(args)
-    names = options.names_of(args.outputs, ALL, "--outputs")
-    answer = ask(case, names, full=args.full, seed=args.seed)
-    with options.printing_to(args.target):
-        if args.json:
-            print_json("answer", answer.as_json())
-        else:
-            print("\n".join(answer_lines(answer)))
-    if args.write_scene:
-        with options.printing_to(args.write_scene):
-            print(scene_case(answer).toml(), end="")
-    return int(not answer.possible)
-
-
 TABLES = (".csv", ".tsv", ".jsonl", ".ndjson", ".parquet", ".xlsx")
 """Endings of files that take a table."""
+OPTIONS = (
+    *CASE,
+    texts("--outputs", "NAMES", "the results wanted: A,B,..."),
+    flag("--full", "every result of FILE.toml"),
+    JSON,
+    TARGET,
+    texts("--sweep", "NAME=LOW:HIGH:COUNT", "a table of FILE.toml in which a value changes"),
+    choice("--arithmetic", ("float64", "applesoft"), "of a table; applesoft: the 1988 program's"),
+    input_file("--scene", "FILE.toml", "values for the columns that a table lacks"),
+    flag("--results-only", "leave the scene's columns out"),
+    output_file("--errors", "FILE", "write all bad rows of a table here (CSV)"),
+    option("--from", dest="source", default="", choices=("toml", *FORMATS), help="format of FILE"),
+    choice("--to", FORMATS, "format of the table to write"),
+    option("--encoding", default="", metavar="NAME", help="of CSV that is not UTF-8: cp1252"),
+)
 
 
-def _solve_table(args: options.Args) -> int:
+def main(args: Args) -> int:
+    """Answer a collision, or solve a table."""
+    is_table = bool(args.file) and args.source != "toml" and not args.file.lower().endswith(".toml")
+    if is_table or args.sweep or args.arithmetic or args.target.lower().endswith(TABLES):
+        return _solve_table(args, is_table)
+    from ..report.answers import ALL, ask
+    from .answers import show_answer
+
+    names = names_of(args.outputs, ALL, "--outputs")
+    answer = ask(case_of(args), names, full=args.full)
+    with printing_to(args.target):
+        return show_answer(answer, args.json)
+
+
+def _solve_table(args: Args, is_table: bool) -> int:
     """Solve each row of a table, or of a case that is swept."""
     from ..cases.case import Case
     from ..cases.units import View
     from ..tables.solving import solve_table
     from ..tables.sweeping import sweep_table
 
-    for name in ("json", "full"):
-        if getattr(args, name):
-            raise UserError(f"--{name} is for the answer to a FILE.toml; expected a table without")
-    is_table = args.file and not (args.sample or args.file.lower().endswith(".toml"))
-    view = View.of(**options.view_of(args))
-    if is_table and args.sweep:
-        raise UserError("--sweep is for a collision; expected a FILE.toml")
-    if not is_table:
-        case = options.case_of(args)
-        source = sweep_table(case, options.pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT"))
-    else:
-        source = args.file
-        case = (
-            Case.load(args.scene, **options.view_of(args)) if args.scene else Case.of({}, view=view)
-        )
-        case = options.changed(case, args)
-    with progress("solve") as meter:
+    if args.json or args.full or (is_table and args.sweep):
+        raise UserError("--json, --full and --sweep are for a FILE.toml, not for a table")
+    table, view = args.file, View.of(**view_of(args))
+    if is_table:
+        args.file = args.scene
+    is_case = args.file or args.sample or args.set
+    case = case_of(args) if is_case or not is_table else Case.of({}, view=view)
+    ranges = pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT")
+    with progress("solve") as update:
         solved = solve_table(
-            source,
+            table if is_table else sweep_table(case, ranges),
             args.target,
-            options.names_of(args.outputs, RESULTS, "--outputs"),
+            names_of(args.outputs, RESULTS, "--outputs"),
             case=case,
-            replaced=[*options.changes_of(args)] if is_table else (),
+            replaced=[*changes_of(args)] if is_table else (),
             view=view,
             arithmetic=args.arithmetic or "float64",
             results_only=args.results_only,
-            source_format=args.source or "",
-            target_format=args.to or "",
-            encoding=args.encoding or "",
+            source_format=args.source,
+            target_format=args.to,
+            encoding=args.encoding,
             errors=args.errors or "",
-            progress=meter.update,
+            progress=update,
         )
     remarks = dict.fromkeys([*case.remarks, *solved.remarks])
-    say("solve", [*remarks, *solved.messages(display_name(args.file or ""))])
+    say("solve", [*remarks, *solved.messages(display_name(table or ""))])
     return int(bool(solved.bad or solved.ended))

@@ -22,104 +22,91 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from glob import glob
 from hashlib import sha256
-from typing import TYPE_CHECKING
+from typing import Any
 
 from ..errors import UserError, note
 from ..files import display_name, read_bytes
+from ..printouts import Verdict, verify, words
 from . import options
-from .output import print_json
-
-if TYPE_CHECKING:
-    from ..report.exhibits import Exhibit
+from .options import flag, input_file, option
+from .output import show
 
 HEADINGS = {"number": "case", "examiner": "examiner", "date": "date"}
-"""Headings of the page, and the options that give them."""
-
-
-def declare(parser: options.Parser) -> None:
-    """Add the arguments."""
-    parser.add_argument(
-        "printouts", nargs="+", type=options.InputPath, metavar="FILE", help="text, picture or PDF"
-    )
-    parser.add_argument("--brief", action="store_true", help="verdicts and findings alone")
-    parser.add_argument(
-        "--scene",
-        dest="file",
+"""Headings of the report, and the options that give them."""
+OPTIONS = (
+    option(
+        "printouts",
+        nargs="+",
         type=options.InputPath,
-        metavar="FILE.toml",
-        help="the inputs, for a page with results only",
-    )
-    options.add_sample(parser)
-    options.add_set(parser)
-    options.add_view(parser)
-    parser.add_argument(
-        "--listing",
-        type=options.InputPath,
-        metavar="FILE.bas",
-        help="an office's own copy of the listing, which printed the page",
-    )
-    parser.add_argument(
-        "--report", type=options.OutputPath, metavar="FILE.html", help="write a page for the case"
-    )
-    for name in HEADINGS.values():
-        parser.add_argument(f"--{name}", default="", help="heading of that page")
-    options.add_json(parser)
-    options.add_output(parser)
+        metavar="FILE",
+        help="text, picture or PDF",
+    ),
+    flag("--brief", "verdicts and findings alone"),
+    input_file("--scene", "FILE.toml", "the inputs, for a page with results only"),
+    input_file("--listing", "FILE.bas", "the office's own copy of the listing"),
+    options.output_file("--report", "FILE.html", "write a page for the case"),
+    *(option(f"--{name}", default="", help="heading of that page") for name in HEADINGS.values()),
+    options.JSON,
+    options.OUTPUT,
+)
 
 
 def main(args: options.Args) -> int:
     """Verify printouts."""
-    given: Mapping[str, str] | None = None
-    if args.file or args.sample or args.set:
-        given = options.case_of(args).texts
-    status, exhibits = 0, []
+    given = None
+    if args.scene:
+        from ..cases.case import Case
+
+        given = Case.load(args.scene).texts
+    pages: list[Page] = []
+    failure = None
     for path in (path for name in args.printouts for path in sorted(glob(name)) or [name]):
         try:
-            data = read_bytes(path)
-            found = [*_verified(args, display_name(path), data, given)]
+            pages += _verified(args, display_name(path), read_bytes(path), given)
         except UserError as error:
-            note("verify", str(error))
-            status = 2
-            continue
-        exhibits += found
-        adverse = any(exhibit.verdict != "IDENTICAL" for exhibit in found)
-        status = max(status, int(adverse))
-    if args.report and exhibits:
+            if failure:
+                note("verify", str(failure))
+            failure = error
+    if failure:
+        raise failure
+    if args.report:
         from ..report.casepage import verification_page
 
-        headings = {name: getattr(args, option) for name, option in HEADINGS.items()}
+        headings = {name: getattr(args, heading) for name, heading in HEADINGS.items()}
         with options.printing_to(args.report):
-            print(verification_page(exhibits, **headings), end="")
-    return status
+            print(verification_page([exhibit for _, exhibit in pages], **headings), end="")
+    return int(any(verdict is not Verdict.IDENTICAL for verdict, _ in pages))
+
+
+Page = tuple[Verdict, Any]
+"""The verdict on a printout, and its part of the report if there is one."""
 
 
 def _verified(
     args: options.Args, name: str, data: bytes, given: Mapping[str, str] | None
-) -> Iterator[Exhibit]:
+) -> Iterator[Page]:
     """Print and yield the printouts of a file."""
-    from ..printouts import verify, words
     from ..report.exhibits import PICTURE_STARTS, of_picture, of_text, read_picture
 
     digest = sha256(data).hexdigest()
-    if data.startswith(PICTURE_STARTS):
+    pages: Any
+    if is_picture := data.startswith(PICTURE_STARTS):
         if args.listing:
             raise UserError("--listing goes with texts, not with pictures", name)
-        for number, page in enumerate(read_picture(name, data, given), 1):
-            if args.json:
-                record = words.record(page.verification, name, number, digest)
-                print_json("verify", {**record, **page.places()})
-            else:
-                lines = words.write(page.verification, name, number, args.brief)
-                print("\n".join([*lines, *(f"  {remark}" for remark in page.remarks), ""]))
-            yield of_picture(page, f"{name}, printout {number}", digest)
-        return
-    try:
-        results = verify(data, given, args.listing)
-    except UserError as error:
-        raise UserError(str(error).removeprefix("text: "), name) from None
-    for number, result in enumerate(results, 1):
-        if args.json:
-            print_json("verify", words.record(result, name, number, digest))
-        else:
-            print("\n".join([*words.write(result, name, number, args.brief), ""]))
-        yield of_text(result, f"{name}, printout {number}", digest)
+        pages = read_picture(name, data, given)
+    else:
+        try:
+            pages = verify(data, given, args.listing)
+        except UserError as error:
+            raise UserError(str(error).removeprefix("text: "), name) from None
+    for number, page in enumerate(pages, 1):
+        result = page.verification if is_picture else page
+        lines = words.write(result, name, number, args.brief)
+        record = words.record(result, name, number, digest)
+        if is_picture:
+            lines += [f"  {remark}" for remark in page.remarks]
+            record |= page.places()
+        show(args.json, "verify", record, [*lines, ""])
+        make: Any = of_picture if is_picture else of_text
+        source = f"{name}, printout {number}"
+        yield result.verdict, args.report and make(page, source, digest)
