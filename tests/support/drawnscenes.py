@@ -7,7 +7,7 @@ from html import unescape
 from typing import NamedTuple
 
 from impact88.cases import Case
-from impact88.report.paper import text_width
+from impact88.report.paper import text_size
 
 SIDE = {
     "units": "us",
@@ -82,15 +82,19 @@ class Placed(NamedTuple):
         beside = self.right <= other.left or other.right <= self.left
         return not beside and self.top < other.bottom and other.top < self.bottom
 
+    def is_within(self, other: Placed) -> bool:
+        """Return True if a box is within another."""
+        is_beside = self.left < other.left or other.right < self.right
+        return not (is_beside or self.top < other.top or other.bottom < self.bottom)
+
 
 def texts_of(svg: str) -> list[Placed]:
     """Return the texts of a drawing."""
-    pattern = r'<text x="(\S+)" y="(\S+)" text-anchor="(\w+)" font-size="(\S+)"[^>]*>(.*?)</text>'
+    pattern = r'<text x="(\S+)" y="(\S+)" font-size="(\S+)"[^>]*>(.*?)</text>'
     placed = []
-    for x, y, anchor, size, content in re.findall(pattern, svg):
+    for x, y, size, content in re.findall(pattern, svg):
         text = unescape(re.sub("<[^>]*>", "", content))
-        width, height = text_width(text, float(size)), float(size)
-        left = float(x) - (width / 2 if anchor == "middle" else 0)
-        top = float(y) - 0.78 * height
-        placed.append(Placed(text, left, top, left + width, top + height))
+        left, top = float(x), float(y) - 0.78 * float(size)
+        right = left + text_size(text, float(size)).real
+        placed.append(Placed(text, left, top, right, top + float(size)))
     return placed

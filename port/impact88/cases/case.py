@@ -257,11 +257,11 @@ class Case:
 
     def toml(self) -> str:
         """Return the case as a commented scene file, entries as written."""
-        texts = {name: _written_text(value) for name, value in self.written.items()}
+        texts = {name: written_text(value) for name, value in self.written.items()}
         return write_toml({**self.view.words(), **texts}, view=self.view)
 
 
-def _written_text(value: str | Amount) -> str:
+def written_text(value: str | Amount) -> str:
     """Return an entry as text; an amount in the notation of a file."""
     if isinstance(value, str):
         return value

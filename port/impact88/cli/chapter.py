@@ -60,7 +60,7 @@ def _answer(case: Case, question: str, results: Values, *remarks: str) -> Answer
         "forward",
         question,
         given_of(case),
-        numbers_of(case, finite, {}, {}),
+        numbers_of(case, finite),
         case,
         possible=not bits & status.IMPOSSIBLE,
         remarks=(*case.remarks, *remarks),

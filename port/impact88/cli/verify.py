@@ -19,20 +19,19 @@ exit status: 0 identical; 1 any other verdict; 2 a file that cannot be read"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from glob import glob
-from hashlib import sha256
-from typing import Any
 
 from ..errors import UserError, note
 from ..files import display_name, read_bytes
-from ..printouts import Verdict, verify, words
+from ..printouts import Verdict, words
+from ..report.exhibits import Exhibit, examine
 from . import options
 from .options import flag, input_file, option
 from .output import show
 
-HEADINGS = {"number": "case", "examiner": "examiner", "date": "date"}
-"""Headings of the report, and the options that give them."""
+HEADINGS = ("case", "examiner", "date")
+"""Headings of the report, as options."""
 OPTIONS = (
     option(
         "printouts",
@@ -45,7 +44,7 @@ OPTIONS = (
     input_file("--scene", "FILE.toml", "the inputs, for a page with results only"),
     input_file("--listing", "FILE.bas", "the office's own copy of the listing"),
     options.output_file("--report", "FILE.html", "write a page for the case"),
-    *(option(f"--{name}", default="", help="heading of that page") for name in HEADINGS.values()),
+    *(option(f"--{name}", default="", help="heading of that page") for name in HEADINGS),
     options.JSON,
     options.OUTPUT,
 )
@@ -58,11 +57,11 @@ def main(args: options.Args) -> int:
         from ..cases.case import Case
 
         given = Case.load(args.scene).texts
-    pages: list[Page] = []
+    exhibits: list[Exhibit] = []
     failure = None
     for path in (path for name in args.printouts for path in sorted(glob(name)) or [name]):
         try:
-            pages += _verified(args, display_name(path), read_bytes(path), given)
+            exhibits += _verified(args, display_name(path), read_bytes(path), given)
         except UserError as error:
             if failure:
                 note("verify", str(failure))
@@ -72,41 +71,22 @@ def main(args: options.Args) -> int:
     if args.report:
         from ..report.casepage import verification_page
 
-        headings = {name: getattr(args, heading) for name, heading in HEADINGS.items()}
+        headings = {name: getattr(args, name) for name in HEADINGS}
         with options.printing_to(args.report):
-            print(verification_page([exhibit for _, exhibit in pages], **headings), end="")
-    return int(any(verdict is not Verdict.IDENTICAL for verdict, _ in pages))
-
-
-Page = tuple[Verdict, Any]
-"""The verdict on a printout, and its part of the report if there is one."""
+            print(verification_page(exhibits, **headings), end="")
+    return int(any(item.result.verdict is not Verdict.IDENTICAL for item in exhibits))
 
 
 def _verified(
     args: options.Args, name: str, data: bytes, given: Mapping[str, str] | None
-) -> Iterator[Page]:
-    """Print and yield the printouts of a file."""
-    from ..report.exhibits import PICTURE_STARTS, of_picture, of_text, read_picture
-
-    digest = sha256(data).hexdigest()
-    pages: Any
-    if is_picture := data.startswith(PICTURE_STARTS):
-        if args.listing:
-            raise UserError("--listing goes with texts, not with pictures", name)
-        pages = read_picture(name, data, given)
-    else:
-        try:
-            pages = verify(data, given, args.listing)
-        except UserError as error:
-            raise UserError(str(error).removeprefix("text: "), name) from None
-    for number, page in enumerate(pages, 1):
-        result = page.verification if is_picture else page
-        lines = words.write(result, name, number, args.brief)
-        record = words.record(result, name, number, digest)
-        if is_picture:
-            lines += [f"  {remark}" for remark in page.remarks]
-            record |= page.places()
+) -> list[Exhibit]:
+    """Print and return the printouts of a file."""
+    exhibits = examine(name, data, given, args.listing or "")
+    for exhibit in exhibits:
+        lines = words.write(exhibit.result, name, exhibit.number, args.brief)
+        record = words.record(exhibit.result, name, exhibit.number, exhibit.digest)
+        if exhibit.page:
+            lines += [f"  {remark}" for remark in exhibit.page.remarks]
+            record |= exhibit.page.places()
         show(args.json, "verify", record, [*lines, ""])
-        make: Any = of_picture if is_picture else of_text
-        source = f"{name}, printout {number}"
-        yield result.verdict, args.report and make(page, source, digest)
+    return exhibits

@@ -12,16 +12,14 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from .. import status
-from ..cases.amounts import Amount
-from ..cases.case import Case
-from ..cases.scenefile import INPUTS, SOURCE
+from ..cases.case import Case, written_text
+from ..cases.scenefile import INPUTS
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import (
     ANGLE,
     FINAL_VELOCITIES,
     PERCENT,
-    PIVOT,
     RESULTS,
     SCENE,
     VELOCITIES,
@@ -29,31 +27,26 @@ from ..names import (
     missing,
     quantity,
 )
-from .rounding import OF_INTERVAL, decimals_of, decimals_with, own_decimals, rounded
+from .rounding import decimals_in, rounded
 
 if TYPE_CHECKING:
     from ..reconstruction.answer import Reconstruction
-    from ..reconstruction.bounds import Bounds
 
-SPEEDS = ("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF")
 CHANGES = ("DVA", "PDOFA", "DVB", "PDOFB")
-FORWARD = (*CHANGES, *FINAL_VELOCITIES, "SAF", "HAF", "SBF", "HBF", "LOSS", "VC", "MUC")
+SPEEDS_AFTER = ("SAF", "HAF", "SBF", "HBF")
+FORWARD = (*CHANGES, *FINAL_VELOCITIES, *SPEEDS_AFTER, "LOSS", "VC", "MUC")
 """Results of a forward question, the most asked first."""
-BACKWARD = (*SPEEDS, *CHANGES, "E", "MUP", "EM", "WA", "WB", "WAF", "WBF", "LOSS")
+SPINS = ("WA", "WB", "WAF", "WBF")
+BACKWARD = ("SA", "HA", "SB", "HB", *SPEEDS_AFTER, *CHANGES, "E", "MUP", "EM", *SPINS, "LOSS")
 """Results of a reconstruction, the most asked first."""
-ALL = tuple(
-    dict.fromkeys(
-        (
-            *(*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS),
-            *("DVAF", "DVAR", "DVBF", "DVBR", "P", "RR0", "EL", "DT", "CAX", "CAY", "CBX", "CBY"),
-        )
-    )
-)
+COMPONENTS = ("DVAF", "DVAR", "DVBF", "DVBR", "P", "RR0", "EL", "DT", "CAX", "CAY", "CBX", "CBY")
+ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
 UNUSABLE = (
-    "no impact has these values; expected M = 6 or 4, masses and inertias above 0, and at most one "
-    "barrier (MB = inf, IB = inf), at rest"
+    "no impact has these values; expected masses and inertias above 0, and at most one barrier "
+    "(MB = inf, IB = inf), at rest"
 )
+POINTS = ("CAF", "CAL", "CBF", "CBL")
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
 MAX_DRIVERS = 3  # values named as those that make a result uncertain
@@ -61,89 +54,33 @@ MIN_SHARE = 0.05  # of a result's variance, from which a value is named
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class Row:
     """One number of an answer, in the unit in which it is shown.
 
     Parameters
     ----------
     name, meaning, unit : str
         Of the quantity (`impact88.names`); the unit is "" for ratios and without named units.
-    value : float
-        The number, not rounded.
     text : str
-        The number as every reader sees it, without its unit.
-    low, high : float or None
-        Ends of its 90 % interval; None for an exact number.
-    low_text, high_text : str
-        The ends, rounded alike; "" for an exact number.
+        A result as every reader sees it, without its unit; an entry as written.
     note : str
-        The same in other words: "10 o'clock".
-    drivers : str
-        What makes it uncertain, the largest first: "UX 62 %, MU 20 %".
+        A result in other words, "10 o'clock"; the source of an entry.
+    interval : str
+        The 90 % interval as every reader sees it, "28.1 .. 31.5"; "" for an exact number.
+    value : float or None
+        A result, not rounded; None for an entry, and where only an interval is known.
+    ends : tuple of float or None
+        The ends of the interval, not rounded.
     """
 
     name: str
     meaning: str
     unit: str
-    value: float
     text: str
-    low: float | None = None
-    high: float | None = None
-    low_text: str = ""
-    high_text: str = ""
     note: str = ""
-    drivers: str = ""
-
-    @property
-    def interval(self) -> str:
-        """The 90 % interval as text: "28.1 .. 31.5"; "" for an exact number."""
-        return f"{self.low_text} .. {self.high_text}" if self.low_text else ""
-
-
-@dataclass(frozen=True, slots=True)
-class Given:
-    """One entry of the case.
-
-    Parameters
-    ----------
-    name, meaning, unit : str
-        Of the quantity.
-    text : str
-        The entry as written.
-    source : str
-        Where it comes from, as the case says.
-    """
-
-    name: str
-    meaning: str
-    unit: str
-    text: str
-    source: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """A value known with a tolerance, beside the others (Baarda 1968); texts, rounded.
-
-    Parameters
-    ----------
-    name, unit : str
-        Of the quantity.
-    measured, adjusted, by_others : str
-        As given, in the impact found, and as the other values alone would have it.
-    residual : str
-        Adjustment in its standard deviations.
-    is_odd : bool
-        True if it is most at odds with the others.
-    """
-
-    name: str
-    unit: str
-    measured: str
-    adjusted: str
-    by_others: str
-    residual: str
-    is_odd: bool = False
+    interval: str = ""
+    value: float | None = None
+    ends: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -156,20 +93,19 @@ class Answer:
         The question that the case leaves open.
     question : str
         The same in words: "SA and SB, from 10 exact values".
-    given : tuple of Given
+    given : tuple of Row
         The entries, in the order of the file.
-    found : mapping of str to Number
+    found : mapping of str to Row
         Results by name, the most asked first.
+    case : Case
+        The case.
     evidence : str
         Agreement of what is known, in words; "" for a forward question.
     possible : bool
         False if no impact that physics allows agrees with what is known.
-    assumed : tuple of str
-        Ranges assumed for what is not given.
-    advice : tuple of str
-        Values that would help if they were given.
-    checks : tuple of Check
-        Values known with tolerances, beside the others.
+    sections : mapping of str to tuple of str
+        Sentences by subject: ``checked``, values beside the others; ``depends``, what makes results
+        uncertain; ``assumed`` ranges; ``helps``, values that would; ``rejected`` other impacts.
     remarks : tuple of str
         How entries were understood, estimates, results that lack an input.
     warnings : tuple of str
@@ -177,21 +113,17 @@ class Answer:
     scene : mapping of str to float
         Inputs and results in base units along the listing's axes, for drawings.
     alternatives : tuple of Answer
-        Other impacts that agree with what is known, in the order of likelihood.
-    case : Case
-        The case.
+        Other possible impacts that agree with what is known, in the order of likelihood.
     """
 
     asked: str
     question: str
-    given: tuple[Given, ...]
-    found: Mapping[str, Number]
+    given: tuple[Row, ...]
+    found: Mapping[str, Row]
     case: Case = field(repr=False)
     evidence: str = ""
     possible: bool = True
-    assumed: tuple[str, ...] = ()
-    advice: tuple[str, ...] = ()
-    checks: tuple[Check, ...] = ()
+    sections: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     scene: Mapping[str, float] = field(default_factory=dict, repr=False)
@@ -200,27 +132,18 @@ class Answer:
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
         """The 90 % intervals of the results that have one."""
-        return {
-            name: (number.low, number.high)
-            for name, number in self.found.items()
-            if number.low is not None and number.high is not None
-        }
+        return {name: row.ends for name, row in self.found.items() if row.ends}
 
     def as_json(self) -> dict[str, Any]:
         """Return the answer as an object for JSON."""
-        record = {
-            "asked": self.asked,
-            "question": self.question,
-            "given": [asdict(entry) for entry in self.given],
-            "found": [asdict(number) for number in self.found.values()],
-            "evidence": self.evidence,
-            "possible": self.possible,
+        names = ("asked", "question", "evidence", "possible", "remarks", "warnings")
+        return {
+            **{name: getattr(self, name) for name in names},
+            **self.sections,
+            "given": [asdict(row) for row in self.given],
+            "found": [asdict(row) for row in self.found.values()],
+            "alternatives": [answer.as_json() for answer in self.alternatives],
         }
-        for name in ("assumed", "advice", "remarks", "warnings"):
-            record[name] = list(getattr(self, name))
-        record["checks"] = [asdict(check) for check in self.checks]
-        record["alternatives"] = [answer.as_json() for answer in self.alternatives]
-        return record
 
 
 def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int = 0) -> Answer:
@@ -248,22 +171,19 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
     UserError
         For a case that gives too little, and for values that no impact has.
     """
-    if is_forward(case):
+    equations = case.entries["M"].value
+    if equations not in (4, 6):
+        message = f"M = {equations:g}; expected 6, or 4 for point masses"
+        raise UserError(message, case.place("M"))
+    is_scene = {*case.entries} <= {*SCENE, *POINTS}
+    if is_scene and not evaluate(case.numbers, FINAL_VELOCITIES[:4])[1]:
         names = tuple(wanted) or (ALL if full else FORWARD)
         if math.isinf(case.numbers["MB"]):  # a barrier
             names = tuple(name for name in names if "B" not in name or name in wanted)
         return _forward(case, names, seed)
-    exact = {name for name, amount in case.entries.items() if not amount.varies}
+    exact = [name for name, amount in case.entries.items() if not amount.varies]
     names = tuple(wanted) or (ALL if full else tuple(n for n in BACKWARD if n not in exact))
     return _reconstructed(case, names, seed)
-
-
-def is_forward(case: Case) -> bool:
-    """Return True if a case gives a scene from which the final velocities follow, and no more."""
-    if not set(case.entries) <= {*SCENE, "CAF", "CAL", "CBF", "CBL"}:
-        return False
-    lacking = evaluate(case.numbers, ("VAX", "VAY", "VBX", "VBY"))[1]
-    return not lacking
 
 
 def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
@@ -272,98 +192,84 @@ def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     numbers = {name: float(value) for name, value in values.items()}
     if numbers.pop("fit", 1.0) == 0:
         raise UserError(UNUSABLE, case.source)
-    bits = int(numbers.pop("STATUS", 0.0))
-    warnings = status.sentences(bits)
-    remarks = [*case.remarks, *_lacking_remarks(lacking)]
-    undefined = [name for name in names if math.isnan(numbers.get(name, 0.0))]
-    if undefined:
-        remarks.append(f"{' '.join(undefined)}: not defined for this impact")
-    shown = {name: numbers[name] for name in names if name in numbers and name not in undefined}
-    intervals: dict[str, tuple[float, float]] = {}
-    drivers: dict[str, str] = {}
-    question = "velocities after the impact, from a complete scene"
-    if case.ranges:
-        found = _bounds(case, shown, seed)
-        intervals = {n: b.interval for n, b in found.outputs.items() if b.upper > b.lower}
-        drivers = {name: _effects(bound.drivers) for name, bound in found.outputs.items()}
-        warnings += _drawn_warnings(found.warnings, bits)
-        question += f" in which {_listed(case.ranges)} {_verb(case.ranges)} known within limits"
-    return Answer(
-        "bounds" if case.ranges else "forward",
-        question,
+    shown = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
+    absent = [name for name in names if name not in shown]
+    inputs = dict.fromkeys(name for result in absent for name in lacking.get(result, ()))
+    reason = missing([*inputs]) if inputs else "not defined for this impact"
+    remarks = [f"{' '.join(absent)} left out: {reason}"] if absent else []
+    answer = Answer(
+        "forward",
+        "velocities after the impact, from a complete scene",
         given_of(case),
-        numbers_of(case, shown, intervals, drivers),
+        numbers_of(case, shown),
         case,
-        possible=not bits & status.IMPOSSIBLE,
-        remarks=tuple(remarks),
-        warnings=tuple(warnings),
+        possible=not int(numbers["STATUS"]) & status.IMPOSSIBLE,
+        remarks=(*case.remarks, *remarks),
+        warnings=tuple(status.sentences(int(numbers["STATUS"]))),
         scene={**case.numbers, **numbers},
+    )
+    return _with_bounds(answer, shown, seed) if case.ranges else answer
+
+
+def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answer:
+    """Return an answer with 90 % intervals of its results, and what they depend on."""
+    from ..reconstruction.bounds import BOUNDED, bounds
+
+    case = answer.case
+    # random draws do not depend on the file's order; a TA that follows a course is a number
+    inputs = {
+        name: case.numbers.get(name) if math.isnan(amount.value) else amount
+        for name, amount in sorted(case.entries.items())
+    }
+    outputs = [name for name in values if name in BOUNDED]
+    drawn = bounds(inputs, outputs, samples=DRAWS, seed=seed, correlations=case.correlations)
+    varying = {name: bound for name, bound in drawn.outputs.items() if bound.upper > bound.lower}
+    fractions: dict[str, dict[str, float]] = {}
+    for name, bound in varying.items():
+        squares = {n: effect * effect for n, (_, effect) in bound.drivers.items()}
+        total = sum(squares.values()) or 1.0
+        fractions[name] = {n: square / total for n, square in squares.items()}
+    warnings = [
+        f"in {100 * fraction:.2g} % of the draws {words}"
+        for name, fraction in drawn.warnings.items()
+        if (words := status.WORDS[status.Status[name]]) not in answer.warnings
+    ]
+    return replace(
+        answer,
+        asked="bounds",
+        question=f"{answer.question} with limits of {', '.join(case.ranges)}",
+        found=numbers_of(case, values, {name: bound.interval for name, bound in varying.items()}),
+        sections={"depends": _dependences(fractions)},
+        warnings=(*answer.warnings, *warnings),
     )
 
 
-def _bounds(case: Case, names: Iterable[str], seed: int) -> Bounds:
-    """Return quantiles and drivers of the results of a scene within its limits."""
-    from ..reconstruction.bounds import BOUNDED, bounds
+def _dependences(fractions: Mapping[str, Mapping[str, float]]) -> tuple[str, ...]:
+    """Return which inputs make results uncertain: "DVA DVB: UX 62 %, MU 20 %".
 
-    values = {
-        name: case.numbers.get(name) if math.isnan(amount.value) else amount
-        for name, amount in sorted(case.entries.items())  # random draws, whatever the file's order
-    }
-    wanted = [name for name in names if name in BOUNDED]
-    return bounds(values, wanted, samples=DRAWS, seed=seed, correlations=case.correlations)
-
-
-def _effects(drivers: Mapping[str, tuple[float, float]]) -> str:
-    """Return the inputs that make a result uncertain, by squares of what each does alone."""
-    squares = {name: effect * effect for name, (_, effect) in drivers.items()}
-    total = sum(squares.values())
-    return _shares({name: square / total for name, square in squares.items()} if total else {})
+    Parameters
+    ----------
+    fractions : mapping of str to mapping of str to float
+        Fractions of each result's variance, by input.
+    """
+    results: dict[str, list[str]] = {}
+    for result, parts in fractions.items():
+        ranked = sorted(parts, key=lambda name: -parts[name])[:MAX_DRIVERS]
+        named = [n for n in ranked if parts[n] >= MIN_SHARE and [*parts] != [result]]
+        words = ", ".join(f"{name} {100 * parts[name]:.0f} %" for name in named)
+        results.setdefault(words, []).append(result)
+    return tuple(f"{' '.join(names)}: {words}" for words, names in results.items() if words)
 
 
-def _shares(shares: Mapping[str, float]) -> str:
-    """Return the largest shares of a variance in words: "UX 62 %, MU 20 %"."""
-    ranked = sorted(shares.items(), key=lambda pair: -pair[1])[:MAX_DRIVERS]
-    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in ranked if share >= MIN_SHARE)
-
-
-def _drawn_warnings(fractions: Mapping[str, float], bits: int) -> list[str]:
-    """Return a sentence for each warning that only some of the draws have."""
-    return [
-        f"in {100 * fraction:.2g} % of the draws {status.WORDS[status.Status[name]]}"
-        for name, fraction in fractions.items()
-        if not bits & status.Status[name]
-    ]
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Return names as "UX, VY and E"."""
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
-
-
-def _verb(names: Sequence[str]) -> str:
-    return "is" if len(names) == 1 else "are"
-
-
-def _lacking_remarks(lacking: Mapping[str, tuple[str, ...]]) -> list[str]:
-    """Return a sentence for the results that need an input that is not given."""
-    by_inputs: dict[tuple[str, ...], list[str]] = {}
-    for name, inputs in lacking.items():
-        if name not in ("STATUS", "fit"):
-            by_inputs.setdefault(inputs, []).append(name)
-    return [f"{' '.join(names)} left out: {missing(inputs)}" for inputs, names in by_inputs.items()]
-
-
-def given_of(case: Case) -> tuple[Given, ...]:
+def given_of(case: Case) -> tuple[Row, ...]:
     """Return the entries of a case, in the order of its file."""
     rows = []
-    for name, amount in {**case.entries, **case.sizes}.items():
-        written = case.written.get(name, "")
-        text = written if isinstance(written, str) and written else _amount_text(case, name, amount)
-        has_unit = any(c.isalpha() or c == "%" for c in text)
-        unit = "" if has_unit else unit_of(case, name)
-        meaning = quantity(name).meaning
-        rows.append(Given(name, meaning, unit, text, case.sources.get(name, "")))
+    for name, entry in case.written.items():
+        if name in INPUTS:
+            text, source = written_text(entry), case.sources.get(name, "")
+            has_unit = any(c.isalpha() or c == "%" for c in text)
+            unit = "" if has_unit else unit_of(case, name)
+            rows.append(Row(name, quantity(name).meaning, unit, text, source))
     return tuple(rows)
 
 
@@ -372,66 +278,41 @@ def unit_of(case: Case, name: str) -> str:
     return case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(quantity(name).unit, "")
 
 
-def _amount_text(case: Case, name: str, amount: Amount) -> str:
-    """Return an amount that no entry wrote, as text."""
-    if math.isnan(amount.value):
-        return amount.text
-    low, high = case.view.shown_ends(name, *amount.limits())
-    middle = case.view.shown_text(name, amount.value)
-    return f"{low:.6g} .. {high:.6g}" if amount.varies else middle
-
-
 def numbers_of(
     case: Case,
     values: Mapping[str, float],
-    intervals: Mapping[str, tuple[float, float]],
-    drivers: Mapping[str, str],
-) -> dict[str, Number]:
-    """Return values in base units as numbers of an answer.
+    intervals: Mapping[str, tuple[float, float]] | None = None,
+) -> dict[str, Row]:
+    """Return values as rows of an answer.
 
     Parameters
     ----------
     case : Case
         The case, in whose units they are shown.
     values : mapping of str to float
-        Values by name; NaN where only an interval is known.
-    intervals : mapping of str to (float, float)
+        Values by name in base units; NaN where only an interval is known.
+    intervals : mapping of str to (float, float), optional
         90 % intervals of some of them, in base units.
-    drivers : mapping of str to str
-        What makes some of them uncertain.
     """
+    rows = {}
     shown = {name: float(case.view.shown(name, value)) for name, value in values.items()}
-    groups: dict[str, list[float]] = {}
     for name, value in shown.items():
-        if math.isfinite(value):
-            groups.setdefault(quantity(name).unit, []).append(value)
-    group_decimals = {rule: decimals_of(members) for rule, members in groups.items()}
-    numbers = {}
-    for name, value in shown.items():
-        row = quantity(name)
-        decimals = own_decimals(row.unit, value)
-        decimals = group_decimals.get(row.unit, 0) if decimals is None else decimals
-        note, driver = _note(name, value), drivers.get(name, "")
-        ends: tuple[float | None, float | None, str, str] = (None, None, "", "")
-        if name in intervals:
-            low, high = (float(x) for x in case.view.shown_ends(name, *intervals[name]))
-            if row.unit == ANGLE and math.isfinite(value):  # a heading is within one turn
+        rule = quantity(name).unit
+        group = [x for n, x in shown.items() if quantity(n).unit == rule]
+        decimals, ends, interval = decimals_in(rule, group), None, ""
+        if intervals and name in intervals:
+            low, high = case.view.shown_ends(name, *intervals[name])
+            if rule == ANGLE and math.isfinite(value):  # a heading is within one turn
                 turns = 360.0 * round((value - (low + high) / 2) / 360.0)
                 low, high = low + turns, high + turns
-            decimals = decimals_with((low, high), decimals)
-            ends = low, high, rounded(low, decimals), rounded(high, decimals)
-        text = rounded(value, decimals)
-        numbers[name] = Number(
-            name, row.meaning, unit_of(case, name), value, text, *ends, note, driver
-        )
-    return numbers
-
-
-def _note(name: str, shown: float) -> str:
-    """Return a number in other words: the hour of a direction of force, what -10 stands for."""
-    if name in ("PDOFA", "PDOFB") and math.isfinite(shown):
-        return clock(shown)
-    return "pivot" if name == "MUP" and shown == PIVOT else ""
+            decimals, ends = decimals_in(rule, group, high - low), (low, high)
+            interval = f"{rounded(low, decimals)} .. {rounded(high, decimals)}"
+        text, is_known = rounded(value, decimals), not math.isnan(value)
+        note = clock(value) if name.startswith("PDOF") and is_known else ""
+        exact = value if is_known else None
+        meaning = quantity(name).meaning
+        rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, exact, ends)
+    return rows
 
 
 def clock(degrees: float) -> str:
@@ -446,8 +327,8 @@ def clock(degrees: float) -> str:
     return f"{hour or 12} o'clock"
 
 
-def _reconstructed(case: Case, names: tuple[str, ...], seed: int) -> Answer:
-    """Return the impact that agrees best with what is known; others are its alternatives."""
+def _reconstructed(case: Case, names: Iterable[str], seed: int) -> Answer:
+    """Return the impact that agrees best with what is known, with its alternatives."""
     from ..reconstruction.answer import KNOWABLE, reconstruct
 
     # random draws do not depend on the file's order
@@ -459,63 +340,46 @@ def _reconstructed(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     except UserError as error:
         raise UserError(str(error), case.source) from None
     first, *others = [_impact(case, impact, names) for impact in impacts]
-    return replace(first, alternatives=tuple(others))
+    reasons = [other.warnings[0] for other in others if first.possible > other.possible]
+    rejected = tuple(reason.partition(": ")[2] or reason for reason in reasons)
+    return replace(
+        first,
+        sections={**first.sections, "rejected": rejected},
+        alternatives=tuple(other for other in others if other.possible),
+    )
 
 
 def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
     """Return one impact as an answer."""
     from ..reconstruction import words
 
-    results = [n for n in names if n in impact.values or n in impact.intervals]
-    values = {name: impact.values.get(name, math.nan) for name in results}
-    drivers = {
-        name: _shares(shares)
-        for name in results
-        if (shares := impact.drivers.get(name, {})) and [*shares] != [name]
-    }
-    intervals = {n: ends for n, ends in impact.intervals.items() if n in values}
-    scene = {**case.numbers, **impact.values}
-    warnings = words.warnings(impact, case.view)
+    view, values = case.view, impact.values
+    scene, warnings = {**case.numbers, **values}, words.warnings(impact, view)
     with suppress(UserError):  # an impact that leaves inputs open has no scene
-        determined = impact.scene()
-        scene |= determined
+        scene |= impact.scene()
         if not impact.is_adverse:
-            bits = int(evaluate(determined, ("STATUS",))[0]["STATUS"])
+            bits = int(evaluate(impact.scene(), ("STATUS",))[0]["STATUS"])
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
+    checked = impact.tests if impact.evidence.redundancy else ()
+    shown = [name for name in names if name in values or name in impact.intervals]
     return Answer(
         "reconstruct",
         words.question(impact),
         given_of(case),
-        numbers_of(case, values, intervals, drivers),
+        numbers_of(case, {n: values.get(n, math.nan) for n in shown}, impact.intervals),
         case,
-        evidence=words.evidence(impact, case.view),
+        evidence=words.evidence(impact, view),
         possible=not impact.is_adverse,
-        assumed=words.assumptions(impact),
-        advice=words.advice(impact),
-        checks=_checks(case, impact),
+        sections={
+            "depends": _dependences({n: impact.drivers.get(n, {}) for n in shown}),
+            "checked": tuple(words.check(impact, name, view) for name in checked),
+            "assumed": words.assumptions(impact),
+            "helps": words.advice(impact),
+        },
         remarks=(*case.remarks, *words.remarks(impact)),
         warnings=tuple(warnings),
         scene=scene,
     )
-
-
-def _checks(case: Case, impact: Reconstruction) -> tuple[Check, ...]:
-    """Return the values known with tolerances beside the others."""
-    if not impact.evidence.redundancy:
-        return ()
-    checks = []
-    for name, test in impact.tests.items():
-        shown = [
-            float(case.view.shown(name, x)) for x in (test.measured, test.adjusted, test.by_others)
-        ]
-        deviation = test.sd / abs(float(case.view.map(name)[0]))
-        decimals = decimals_of([deviation], OF_INTERVAL)
-        measured, adjusted, by_others = (rounded(x, decimals) for x in shown)
-        residual, is_odd = rounded(test.residual, 1), name in impact.evidence.at_odds
-        checks.append(
-            Check(name, unit_of(case, name), measured, adjusted, by_others, residual, is_odd)
-        )
-    return tuple(checks)
 
 
 def scene_case(answer: Answer) -> Case:
@@ -528,11 +392,7 @@ def scene_case(answer: Answer) -> Case:
     case, scene = answer.case, answer.scene
     if absent := [name for name in SCENE if name not in scene]:
         raise UserError(f"the impact found leaves inputs open: {missing(absent)}", case.source)
-    ranges = case.ranges
-    kept = {
-        name: value
-        for name, value in case.written.items()
-        if name.removesuffix(SOURCE) not in INPUTS or (name in SCENE and name not in ranges)
-    }
-    texts = {name: case.view.shown_text(name, scene[name]) for name in SCENE if name not in kept}
-    return Case.of({**kept, **texts}, case.source, case.view)
+    kept = [n for n in SCENE if n in case.written and n not in case.ranges]
+    changes = dict.fromkeys((n for n in INPUTS if n not in case.sizes), "")
+    changes |= {name: case.view.shown_text(name, scene[name]) for name in SCENE}
+    return case.with_({name: text for name, text in changes.items() if name not in kept})

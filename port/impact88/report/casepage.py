@@ -5,12 +5,13 @@ A page loads nothing from elsewhere, holds no scripts, and is the same for the s
 from __future__ import annotations
 
 import platform
-import re
 from collections.abc import Sequence
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import PurePath
 from typing import TYPE_CHECKING
+
+import numpy
 
 from ..errors import UserError, library, printable
 from ..files import replacing
@@ -79,7 +80,6 @@ def environment() -> Environment:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    templates.filters["css_text"] = _css_text
     templates.filters["printable"] = _displayed_text
     return templates
 
@@ -90,17 +90,11 @@ def _displayed_text(text: object) -> str:
     return printable(lines, "\n\t")
 
 
-def _css_text(text: str) -> str:
-    """Return a text for a string in a style sheet, without what could end it."""
-    return re.sub(r"[^\w .,:;/()-]", " ", text)
-
-
-def versions() -> str:
-    """Return the versions of what computes."""
-    import numpy
-
+def _render(template: str, **values: object) -> str:
+    """Return a page."""
     python = platform.python_version()
-    return f"impact88 {__version__}, numpy {numpy.__version__}, Python {python}"
+    versions = f"impact88 {__version__}, numpy {numpy.__version__}, Python {python}"
+    return environment().get_template(template).render(versions=versions, **values)
 
 
 def drawing_of(answer: Answer) -> tuple[str, str]:
@@ -132,37 +126,23 @@ def case_page(answer: Answer) -> str:
     """
     case = answer.case
     drawing, undrawn = drawing_of(answer)
-    entries = [entry for entry in answer.given if entry.name != "M"]
-    exact = [e.name for e in entries if e.name in case.entries and not case.entries[e.name].varies]
-    return (
-        environment()
-        .get_template("case.html")
-        .render(
-            title=case.title or "Planar impact of two vehicles",
-            case=case,
-            examiner=case.examiner,
-            date=case.date,
-            paper="letter" if case.view.units in ("us", "chapter", "") else "a4",
-            answer=answer,
-            drawing=drawing,
-            undrawn=undrawn,
-            exact=exact,
-            unsourced=[entry.name for entry in entries if not entry.source],
-            method=METHODS[answer.asked],
-            not_judged=NOT_JUDGED,
-            versions=versions(),
-            digest=sha256(case.toml().encode()).hexdigest(),
-        )
+    return _render(
+        "case.html",
+        title=case.title or "Planar impact of two vehicles",
+        case=case,
+        paper="a4" if case.view.units in ("metric", "si") else "letter",
+        answer=answer,
+        drawing=drawing,
+        undrawn=undrawn,
+        exact=[n for n, amount in case.entries.items() if not amount.varies and n != "M"],
+        method=METHODS[answer.asked],
+        not_judged=NOT_JUDGED,
+        digest=sha256(case.toml().encode()).hexdigest(),
     )
 
 
 def verification_page(
-    exhibits: Sequence[Exhibit],
-    *,
-    title: str = "Verification of printouts",
-    number: str = "",
-    examiner: str = "",
-    date: str = "",
+    exhibits: Sequence[Exhibit], *, case: str = "", examiner: str = "", date: str = ""
 ) -> str:
     """Return the report on verified printouts.
 
@@ -170,7 +150,7 @@ def verification_page(
     ----------
     exhibits : sequence of Exhibit
         The printouts.
-    title, number, examiner, date : str, optional
+    case, examiner, date : str, optional
         Headings: number of the case, and who signs.
 
     Returns
@@ -184,20 +164,14 @@ def verification_page(
     UserError
         If jinja2 is not installed.
     """
-    return (
-        environment()
-        .get_template("verification.html")
-        .render(
-            title=title,
-            case={"case": number},
-            examiner=examiner,
-            date=date,
-            paper="letter",
-            exhibits=exhibits,
-            method=VERIFICATION_METHOD,
-            not_judged=VERIFICATION_NOT_JUDGED,
-            versions=versions(),
-        )
+    return _render(
+        "verification.html",
+        title="Verification of printouts",
+        case={"case": case, "examiner": examiner, "date": date},
+        paper="letter",
+        exhibits=exhibits,
+        method=VERIFICATION_METHOD,
+        not_judged=VERIFICATION_NOT_JUDGED,
     )
 
 

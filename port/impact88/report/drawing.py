@@ -11,21 +11,19 @@ from __future__ import annotations
 
 import cmath
 import math
-import textwrap
 from collections.abc import Iterator, Mapping
+from textwrap import wrap
 from typing import NamedTuple
 
 import numpy as np
 
 from ..cases import Case, View
 from ..errors import UserError, library, printable
+from ..mechanics.solve import evaluate
 from ..names import LENGTH, MASS, missing
-from .answers import Answer, Number, numbers_of
-from .paper import Label, Paper, Points, arc
+from .answers import Answer, numbers_of
+from .paper import BORDER, Paper, Points, arc
 
-COLOURS = {"A": "#0068a3", "B": "#bd4f00", "P": "#99356f"}
-"""Okabe and Ito's blue, vermilion and purple, darkened for thin lines and small texts."""
-BLACK = "#000"
 CLASSES = (
     (450.0, "a motorcycle", 2.2, 0.8),
     (2500.0, "a car", 4.6, 1.8),
@@ -35,85 +33,55 @@ CLASSES = (
     (math.inf, "a barrier", 0.7, 7.0),
 )
 """Classes of bodies: largest mass in kg, words, usual length and width in m."""
-BARRIER = "a barrier"
+BARRIER, DISC = "a barrier", "a disc (point mass)"
 UNKNOWN_MASS = 1500.0  # kg: a body whose mass is not known is drawn as a car
-LARGEST = 1e100  # the largest number drawn: products of some must be doubles
 
-WIDTH = 480.0  # px of the picture
-MARGIN = 46.0  # px around the shapes, for labels
-TALLEST = 360.0  # px of the shapes
-SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of the longest body
+REACH = 150.0  # px from the contact point to the farthest point of a body
+SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of that distance
 FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
 PLANE_REACH = 0.62  # half the contact plane, likewise
-SPIN_RADII = (0.075, 0.11)  # radii of the arcs of spins before and after, likewise
+ASIDE = 0.04j  # distance between arrows that start from one center, likewise
+SPIN_TURN = 2.2  # radians of a spin's arc on either side
 TINY = 0.005  # of the largest velocity: a smaller one, or a slower spin, is not drawn
 CORNERS = np.array([0.5 - 0.5j, 0.5 + 0.5j, -0.5 + 0.5j, -0.5 - 0.5j, 0.5 - 0.5j])
-FRONT = np.array([0.25 - 0.3j, 0.4, 0.25 + 0.3j])
-PLANS = {"disc": [arc(0.5)], "barrier": [CORNERS], "vehicle": [CORNERS, FRONT]}
-"""Lines of each kind of body: fractions of length and i times width from the center."""
+VEHICLE = np.array([0.25 - 0.5j, 0.42, 0.25 + 0.5j, *CORNERS[[1, 0, 3, 2]], 0.25 + 0.5j])
+"""Outlines that face x: fractions of length and i times width; a vehicle's front is marked."""
+VELOCITIES = {"A": ("UX", "UY", "VAX", "VAY"), "B": ("VX", "VY", "VBX", "VBY")}
+SIZES = "SA SB SAF SBF DVA DVB P WA WAF WB WBF PDOFA PDOFB".split()
+"""Results beside arrows, and hours."""
+NOTES_WIDTH = 76  # characters a line
 
 
-AXES = {
-    (False, False): "Axes: x to the right, y up; spins positive counterclockwise.",
-    (True, False): "Axes: x to the right, y down; spins positive clockwise.",
-    (True, True): "Axes: x up, y to the right; spins positive clockwise.",
-}
-"""Directions of axes, by whether they are SAE's and x is north."""
+LEGEND = (
+    "Dashed v and ω: velocities and spins before; V and Ω: after; dotted ΔV: velocity changes. "
+    "P: impulse on A. t: contact plane."
+)
 
 
 class Look(NamedTuple):
-    """Look of one kind of arrow: letter, name of its size, width in px, dashes; its meaning."""
+    """Look of one kind of arrow: letter, name of its size, width in px, dashes."""
 
     letter: str
     name: str
     width: float
-    dashes: str
-    meaning: str
+    dashes: str = "none"
 
 
-BEFORE = Look("v", "S{}", 1.6, "5 3", "v: velocity before")
-AFTER = Look("V", "S{}F", 2.4, "none", "V: velocity after")
-CHANGE = Look("ΔV", "DV{}", 1.4, "1.5 2.5", "ΔV: velocity change")
-SPIN_BEFORE = Look("ω", "W{}", 1.6, "5 3", "ω: spin before")
-SPIN_AFTER = Look("Ω", "W{}F", 2.4, "none", "Ω: spin after")
-IMPULSE = Look("P", "P", 3.4, "none", "P: impulse on A")
-PLANE = Look("t", "", 1.2, "9 3 2 3", "t: contact plane")
-LEGEND_ROWS = (BEFORE, AFTER, CHANGE, IMPULSE, PLANE, SPIN_BEFORE, SPIN_AFTER)
-
-
-class Arrow(NamedTuple):
-    """An arrow in the plane."""
-
-    look: Look
-    points: Points
-    text: str
-    colour: str
+BEFORE = Look("v", "S{}", 1.6, "5 3")
+AFTER = Look("V", "S{}F", 2.4)
+CHANGE = Look("ΔV", "DV{}", 1.4, "1.5 2.5")
+SPIN_BEFORE = Look("ω", "W{}", 1.6, "5 3")
+SPIN_AFTER = Look("Ω", "W{}F", 2.4)
+IMPULSE = Look("P", "P", 3.0)
+PLANE = Look("t", "", 1.2, "9 3 2 3")
 
 
 class Body(NamedTuple):
-    """One body in plan.
+    """One body in plan: class, center of gravity, outline; velocities, NaN if not known."""
 
-    Parameters
-    ----------
-    name : {"A", "B"}
-        Its name.
-    words : str
-        The class or size by which it is drawn.
-    center : complex
-        Center of gravity.
-    length : float
-        Length of its outline.
-    lines : list of ndarray of complex
-        Its outline; that of a vehicle, then the mark of its front.
-    before, after : complex
-        Velocities, NaN if not known.
-    """
-
-    name: str
     words: str
     center: complex
-    length: float
-    lines: list[Points]
+    outline: Points
     before: complex
     after: complex
 
@@ -136,10 +104,7 @@ def draw(answer: Answer) -> str:
     UserError
         If a velocity before the impact or the contact plane is not known, or a value is too large.
     """
-    scene = _Scene(answer)
-    scene.draw()
-    scene.draw_legend()
-    return scene.paper.svg(printable(answer.case.title) or "Scene from above")
+    return _Scene(answer).svg(printable(answer.case.title) or "Scene from above")
 
 
 def to_png(svg: str, width: int = 1440) -> bytes:
@@ -153,189 +118,137 @@ def _unit(degrees: float) -> complex:
     return cmath.rect(1.0, math.radians(degrees))
 
 
-def _known_values(answer: Answer) -> dict[str, float]:
-    """Return what is known of the impact in base units. Raises UserError."""
-    values = {name: amount.value for name, amount in answer.case.sizes.items()}
-    values |= {name: float(x) for name, x in answer.scene.items() if not math.isnan(x)}
-    if absent := [name for name in ("UX", "UY", "VX", "VY", "GA") if name not in values]:
-        raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
-    for name, value in values.items():
-        if LARGEST < abs(value) < math.inf:
-            raise UserError(f"{name} = {value:g} is too large to be drawn")
-    return values
-
-
-def _size(name: str, values: Mapping[str, float], case: Case) -> tuple[float, float, str]:
-    """Return length and width of a body, and words: as measured, or by its class of weight.
+def _shape(name: str, values: Mapping[str, float], case: Case) -> tuple[str, Points]:
+    """Return class and outline of a body that faces x: as measured, or by its weight.
 
     A case without named units is taken to be in the chapter's."""
     view = case.view if case.view.units else View.of(units="chapter")
     meter, kilogram = (float(view.base_size(rule)) for rule in (LENGTH, MASS))
-    mass = kilogram * values.get(f"M{name}", UNKNOWN_MASS / kilogram)
-    _, words, *sizes = next(row for row in CLASSES if mass <= row[0])
+    mass = values.get(f"M{name}", UNKNOWN_MASS / kilogram)
+    _, words, *sizes = next(row for row in CLASSES if mass * kilogram <= row[0])
     length, width = (size / meter for size in sizes)
-    if f"L{name}" in values:
-        length, width, words = values[f"L{name}"], values[f"B{name}"], "measured"
-    ends = f"{view.shown('DA', length):.3g} by {view.shown('DA', width):.3g} {view.unit('DA')}"
-    return length, width, f"as {words}, {ends}"
+    if values["M"] == 4:
+        return DISC, arc(width / 2)
+    if f"L{name}" in case.sizes:
+        words, (length, width) = "measured", (case.sizes[side + name].value for side in "LB")
+    shape = CORNERS if words == BARRIER else VEHICLE
+    return words, shape.real * length + 1j * shape.imag * width
 
 
 def _body(name: str, values: Mapping[str, float], case: Case) -> Body:
     """Return a body in plan."""
-    side, letter = (1, "U") if name == "A" else (-1, "V")
-    before = complex(values[f"{letter}X"], values[f"{letter}Y"])
-    after = complex(values.get(f"V{name}X", math.nan), values.get(f"V{name}Y", math.nan))
-    length, width, words = _size(name, values, case)
-    kind = "barrier" if BARRIER in words else "vehicle"
-    if values.get("M") == 4:
-        kind, length, words = "disc", width, "as a disc (point mass)"
+    side = 1 if name == "A" else -1
+    components = [values.get(velocity, math.nan) for velocity in VELOCITIES[name]]
+    before, after = complex(*components[:2]), complex(*components[2:])
+    words, shape = _shape(name, values, case)
     inward = side * _unit(values["GA"])  # from the contact plane to the body
-    theta = values.get(f"T{name}", 0.0)
-    is_turned = f"T{name}" in values and kind != "barrier"
-    front = -side * _unit(theta) if is_turned else before or -inward
-    front /= abs(front)
-    lines = [front * (p.real * length + 1j * p.imag * width) for p in PLANS[kind]]
-    center = side * values.get(f"D{name}", 0.0) * _unit(theta + values.get(f"P{name}", 0.0))
-    if kind != "vehicle" or not (values.get("DA") or values.get("DB")):
-        center = inward * float((lines[0] / inward).real.max())
-        words += ", moved to the contact plane"
-    lines = [center + line for line in lines]
-    return Body(name, words, center, length, lines, before, after)
+    course = math.degrees(cmath.phase(-side * before))
+    is_fixed = words in (DISC, BARRIER)
+    ahead = -inward if is_fixed else -side * _unit(values.get(f"T{name}", course))
+    outline = shape * ahead
+    center = -values.get(f"D{name}", 0.0) * ahead * _unit(values.get(f"P{name}", 0.0))
+    if is_fixed or not (values.get("DA") or values.get("DB")):  # moved to the contact plane
+        center = inward * float((outline / inward).real.max())
+    return Body(words, center, center + outline, before, after)
 
 
-class _Scene:
-    """The scene of an answer, and the paper on which it is drawn to scale."""
+class _Scene(Paper):
+    """The scene of an answer on paper. Raises UserError for what cannot be drawn."""
 
     def __init__(self, answer: Answer) -> None:
-        self.answer, self.view = answer, answer.case.view
-        self.values = _known_values(answer)
-        self.bodies = [_body(name, self.values, answer.case) for name in "AB"]
-        self.size = max(body.length for body in self.bodies)
-        self.speed = max(abs(v) for b in self.bodies for v in (b.before, b.after) if v == v) or 1.0
-        first = self.bodies[0]
-        impulse = self.values.get("MA", math.nan) * (first.after - first.before)
-        self.impulse = impulse if cmath.isfinite(impulse) else 0j
-        self.arrows = [*self._contact(), *self._velocities(), *self._spins()]
-        self.is_sae = self.view.axes == "sae"
+        super().__init__()
+        values = {name: float(x) for name, x in answer.scene.items() if not math.isnan(x)}
+        if absent := [name for name in ("UX", "UY", "VX", "VY", "GA") if name not in values]:
+            raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
+        sizes, _ = evaluate(values, SIZES)
+        self.sizes = {name: float(x) for name, x in sizes.items() if not math.isnan(x)}
+        if math.inf in self.sizes.values():
+            raise UserError("a value is too large to be drawn")
+        self.view = answer.case.view
+        self.rows = {**numbers_of(answer.case, self.sizes), **answer.found}
+        self.bodies = {name: _body(name, values, answer.case) for name in "AB"}
+        self.reach = max(abs(body.outline).max() for body in self.bodies.values())
+        self.speed = max(x for name, x in self.sizes.items() if name[0] == "S") or 1.0
         # north, which is x of SAE axes, is up
-        self.turn = 1j if self.is_sae and self.view.headings else 1 + 0j
-        lines = [line for body in self.bodies for line in body.lines]
-        lines += [arrow.points for arrow in self.arrows]
-        plan = np.conj(np.concatenate(lines) * self.turn)
-        low = complex(plan.real.min(), plan.imag.min())
-        extent = complex(np.ptp(plan.real), np.ptp(plan.imag))
-        self.scale = min((WIDTH - 2 * MARGIN) / extent.real, TALLEST / extent.imag)
-        self.paper = Paper(complex(WIDTH, self.scale * extent.imag + 2 * MARGIN))
-        self.origin = self.paper.size / 2 - self.scale * (low + extent / 2)
+        self.turn = 1j if self.view.axes and self.view.headings else 1 + 0j
+        self.labels: list[tuple[Points, str, str]] = []
+        for name, body in self.bodies.items():
+            self._draw_body(name, body)
+        plane = 1j * PLANE_REACH * self.reach * _unit(values["GA"])
+        self._draw_arrow(PLANE, "", plane * np.array([-1, 1]))
+        self._draw_dot(0j, "")
+        first = self.bodies["A"]
+        if size := self.sizes.get("P"):
+            run = FORCE_REACH * self.reach * values["MA"] / size * (first.after - first.before)
+            self._draw_arrow(IMPULSE, "P", run * np.array([0, 1]), self._hour("A"))
+        for ends, text, key in self.labels:
+            start, end = self._at(ends)
+            self.label(end, end - start, text, key, 18.0 if text in self.bodies else 12.0)
+        self._draw_legend()
 
-    def at(self, points: Points) -> Points:
+    def _at(self, points: Points) -> Points:
         """Return points of the plane on paper."""
-        places: Points = self.origin + self.scale * np.conj(points * self.turn)
+        places: Points = np.conj(points * self.turn) * (REACH / self.reach)
         return places
 
-    def number(self, name: str) -> Number:
-        """Return the number of a value: the answer's own, or rounded alike."""
-        if name in self.answer.found:
-            return self.answer.found[name]
-        return numbers_of(self.answer.case, {name: self.values[name]}, {}, {})[name]
+    def _draw_body(self, name: str, body: Body) -> None:
+        """Draw a body, its velocities, and its spins as arcs away from the contact."""
+        center, change = body.center, body.after - body.before
+        self.line(self._at(body.outline), name, opacity=0.14)
+        self._draw_dot(center, name)
+        self.labels.append((np.array([0, center]), name, name))
+        aside = ASIDE if name == "A" else -ASIDE
+        arrows = (BEFORE, body.before, 0j), (AFTER, body.after, aside), (CHANGE, change, -aside)
+        for look, velocity, shift in arrows:
+            number = look.name.format(name)
+            if self.sizes.get(number, 0.0) > TINY * self.speed:
+                run = SPEED_REACH * self.reach / self.speed * velocity
+                start = center - run * (look is BEFORE) + shift * self.reach * run / abs(run)
+                self._draw_arrow(look, name, start + run * np.array([0, 1]))
+        for look, radius in (SPIN_BEFORE, 0.075), (SPIN_AFTER, 0.11):
+            spin = self.sizes.get(look.name.format(name), 0.0)
+            if abs(spin) * self.reach > TINY * self.speed:
+                middle, turn = cmath.phase(center), math.copysign(SPIN_TURN, spin)
+                points = arc(radius * self.reach, middle - turn, middle + turn)
+                self._draw_arrow(look, name, center + points)
 
-    def _hour(self, body: Body) -> str:
-        """Return the hour from which a vehicle is struck, as "11 o'clock"; "" if not known."""
-        name = f"PDOF{body.name}"
-        return self.number(name).note if name in self.values and len(body.lines) > 1 else ""
+    def _draw_dot(self, point: complex, key: str) -> None:
+        """Draw a dot."""
+        self.line(self._at(point + arc(0.006 * self.reach)), key, 4.0)
 
-    def _velocities(self) -> Iterator[Arrow]:
-        """Yield velocities: before the impact up to the center of a body, else from it."""
-        for body in self.bodies:
-            change = body.after - body.before
-            for look, velocity in ((BEFORE, body.before), (AFTER, body.after), (CHANGE, change)):
-                if abs(velocity) > TINY * self.speed:
-                    run = SPEED_REACH * self.size / self.speed * velocity
-                    start = body.center - run * (look is BEFORE)
-                    ends = np.array([start, start + run])
-                    self.values[look.name.format(body.name)] = abs(velocity)
-                    yield self._arrow(look, body, ends)
+    def _draw_arrow(self, look: Look, key: str, points: Points, note: str = "") -> None:
+        """Draw an arrow and keep its label: at its tip, of a velocity before at its tail."""
+        self.line(self._at(points), key, look.width, look.dashes, head=f"url(#tip{key})")
+        letter = look.letter + f"_{key.lower()}" * (key in self.bodies)
+        text = f"{letter} {self.rows[look.name.format(key)].text}" if look.name else letter
+        ends = points[1::-1] if look is BEFORE else points[-2:]
+        self.labels.append((ends, text + note, key))
 
-    def _spins(self) -> Iterator[Arrow]:
-        """Yield the spins of vehicles as arcs around their centers, away from the contact."""
-        for body in self.bodies:
-            for look, radius in zip((SPIN_BEFORE, SPIN_AFTER), SPIN_RADII, strict=True):
-                spin = self.values.get(look.name.format(body.name), 0.0)
-                if abs(spin) * self.size > TINY * self.speed and len(body.lines) > 1:
-                    middle, turn = cmath.phase(body.center or 1), math.copysign(2.2, spin)
-                    points = arc(radius * self.size, middle - turn, middle + turn)
-                    yield self._arrow(look, body, body.center + points)
+    def _hour(self, name: str) -> str:
+        """Return from where a body is struck, as ", 11 o'clock"; "" if that is not known."""
+        note = self.rows[f"PDOF{name}"].note if f"PDOF{name}" in self.rows else ""
+        return f", {note}" if note else ""
 
-    def _arrow(self, look: Look, body: Body, points: Points) -> Arrow:
-        """Return the arrow of a body's velocity or spin."""
-        size = self.number(look.name.format(body.name)).text
-        return Arrow(look, points, f"{look.letter}_{body.name.lower()} {size}", COLOURS[body.name])
-
-    def _contact(self) -> Iterator[Arrow]:
-        """Yield contact plane and impulse on A."""
-        plane = np.array([-1j, 1j]) * PLANE_REACH * self.size * _unit(self.values["GA"])
-        yield Arrow(PLANE, plane, "t", BLACK)
-        if self.impulse:
-            run = FORCE_REACH * self.size * self.impulse / abs(self.impulse)
-            self.values["P"] = abs(self.impulse)
-            text = f"P {self.number('P').text}, {self._hour(self.bodies[0])}".removesuffix(", ")
-            yield Arrow(IMPULSE, np.array([0, run]), text, COLOURS["P"])
-
-    def draw(self) -> None:
-        """Draw bodies, arrows and contact point, and label them."""
-        for body in self.bodies:
-            colour = COLOURS[body.name]
-            self.paper.area(self.at(body.lines[0]), colour, 0.14)
-            for line in body.lines:
-                self.paper.line(self.at(line), colour, 1.2)
-            self._dot(body.center, 2 * body.center or 1, body.name, colour, 18)
-        # shorter arrows over longer ones, which do not move aside
-        for look, points, text, colour in sorted(self.arrows, key=_length, reverse=True):
-            ends = self.paper.arrow(self.at(points), colour, look.width, look.dashes)
-            ends = ends[::-1] if look is BEFORE else ends
-            self.paper.labels.append(Label(ends[-1], ends[-1] - ends[-2], text, colour))
-        self._dot(0j, -1j, "C", BLACK, 12)
-        self.paper.write_labels()
-
-    def _dot(self, point: complex, towards: complex, text: str, colour: str, size: float) -> None:
-        """Draw a dot with its label."""
-        center, end = self.at(np.array([point, towards]))
-        self.paper.area(center + arc(3.5), colour)
-        self.paper.labels.append(Label(center, end - center, text, colour, size))
-
-    def draw_legend(self) -> None:
-        """Draw legend, scale and notes below the scene."""
-        corner = complex(14, self.paper.size.imag + 6)
-        notes = textwrap.wrap(" ".join(self._notes()), 72)
-        self.paper.size += 1j * (84 + 14 * len(notes))
-        places = [corner + 240 * (k // 4) + 17j * (k % 4) for k in range(8)]
-        for look, start in zip(LEGEND_ROWS, places, strict=False):
-            colour = COLOURS.get(look.letter, BLACK)
-            self.paper.arrow(np.array([start, start + 26]), colour, look.width, look.dashes)
-            self.paper.text(start + 36 + 4j, look.meaning, BLACK, 11)
+    def _draw_legend(self) -> None:
+        """Draw scale, legend and notes below the scene."""
+        low, high = self.corners()
+        corner = complex(low.real, high.imag) + BORDER
         # the scale has one digit times a power of ten, in the unit shown
         unit = float(self.view.map("DA")[0])
-        amount = float(f"{self.size / 4 / unit:.0e}")
-        start, end = places[7], places[7] + amount * unit * self.scale
-        self.paper.line(np.array([start, end]), BLACK, 3.0)
-        self.paper.text(end + 10 + 4j, f"{amount:g} {self.view.unit('DA')}", BLACK, 11)
-        for k, line in enumerate(notes):
-            self.paper.text(corner + 78j + 14j * k, line, BLACK, 10)
+        amount = float(f"{self.reach / 4 / unit:.0e}")
+        end = corner + amount * unit * REACH / self.reach
+        self.line(np.array([corner, end]), width=3.0)
+        self.text(end + 8, f"{amount:g} {self.view.unit('DA')}")
+        for k, line in enumerate(wrap(" ".join([LEGEND, *self._notes()]), NOTES_WIDTH), 1):
+            self.text(corner + 15j * k, line)
 
     def _notes(self) -> Iterator[str]:
         """Yield the notes of the legend."""
         speed, impulse, spin = (self.view.unit(name) for name in ("SA", "P", "WA"))
         if speed:
             yield f"Velocities in {speed}, impulse in {impulse}, spins in {spin}."
-        if self.view.headings:
-            yield "North is up."
-        yield AXES[self.is_sae, self.turn == 1j]
-        for body in self.bodies:
-            if hour := self._hour(body):
-                yield f"{body.name} is struck from {hour}."
-            yield f"{body.name} drawn {body.words}."
-
-
-def _length(arrow: Arrow) -> float:
-    """Return the distance between the ends of an arrow."""
-    return float(abs(arrow.points[-1] - arrow.points[0]))
+        yield "North is up." if self.view.headings else "The x axis points to the right."
+        yield f"Spins are positive {'' if self.view.axes else 'counter'}clockwise."
+        for name, body in self.bodies.items():
+            hour = self._hour(name).replace(",", "; struck from")
+            yield f"{name} is drawn as {body.words}{hour}."

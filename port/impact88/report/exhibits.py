@@ -3,52 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from hashlib import sha256
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from ..errors import UserError
-from ..printouts import VERDICTS, Kind, Verdict, Verification, judge, words
-from ..printouts.sources import read_text
+from ..printouts import VERDICTS, Kind, Verdict, Verification, verify, words
 
 if TYPE_CHECKING:
+    from ..pictures.exhibit import Exhibit as Picture
     from ..pictures.verdict import PictureVerification
 
 PICTURE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"%PDF-")
 """First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
-DIFFERS = "differs"  # look of a mark: another number or word
-DOUBT = "doubt"  # one not read exactly
-FOREIGN = "foreign"  # text that is not the program's
-
-
-LOOKS = {kind: DIFFERS for kind, verdict in VERDICTS.items() if verdict is Verdict.DIFFERS}
-LOOKS[Kind.FOREIGN] = FOREIGN
-
-
-class Mark(NamedTuple):
-    """A marked place of a text: where, how it looks, and a note."""
-
-    start: int
-    stop: int
-    look: str
-    note: str
-
-
-class Outline(NamedTuple):
-    """A marked place of a picture: corners as an SVG polygon has them, look, and a note."""
-
-    points: str
-    look: str
-    note: str
-
-
-class Picture(NamedTuple):
-    """The picture of a page: data URI, size in px, marked places."""
-
-    uri: str
-    width: int
-    height: int
-    outlines: tuple[Outline, ...]
+DOUBT = "doubt"  # look of a mark: not read exactly
+LOOKS = {kind: "differs" for kind, verdict in VERDICTS.items() if verdict is Verdict.DIFFERS}
+LOOKS[Kind.FOREIGN] = "foreign"
 
 
 @dataclass(frozen=True)
@@ -57,47 +27,65 @@ class Exhibit:
 
     Parameters
     ----------
-    source : str
-        Its file, and which printout of the file it is.
-    verdict, meaning : str
-        The verdict, and the sentence that explains it.
-    is_adverse : bool
-        True if the page differs.
-    sections : mapping of str to tuple of str
-        Sentences by heading, on what was read and compared, findings, explanations, and errors that
-        the page could not reveal; those with the empty heading first.
-    text : str
-        The text, as given or as read from the picture.
-    marks : tuple of Mark
-        Marked places of the text, in order, apart from each other.
-    picture : Picture or None
+    file : str
+        The name of its file.
+    number : int
+        The number of the printout in its file.
+    result : Verification
+        The verdict, and the text, as given or as read from the picture.
+    page : PictureVerification or None
         The page, if it was read from a picture.
     digest : str
         SHA-256 of the file.
     """
 
-    source: str
-    verdict: str
-    meaning: str
-    is_adverse: bool
-    sections: dict[str, tuple[str, ...]]
-    text: str
-    marks: tuple[Mark, ...] = ()
-    picture: Picture | None = field(default=None, repr=False)
+    file: str
+    number: int
+    result: Verification
+    page: PictureVerification | None = None
     digest: str = ""
+
+    @property
+    def is_adverse(self) -> bool:
+        """True if the page differs."""
+        return self.result.verdict is Verdict.DIFFERS
+
+    @property
+    def picture(self) -> Picture | None:
+        """The picture of the page with its marked places, None for a text."""
+        if self.page is None:
+            return None
+        from ..pictures.exhibit import draw_page
+
+        return draw_page(self.page)
+
+    def sections(self) -> dict[str, list[str]]:
+        """Return sentences by heading: on what was read and compared, findings, explanations,
+        errors that the page could not reveal, the picture."""
+        scene = [f"{name} = {text}" for name, text in self.result.scene.items()]
+        return {
+            "": [line.strip() for line in words.write(self.result, brief=True)[1:]],
+            "Inputs with which it was compared": [" ".join(scene)] if scene else [],
+            "Errors that this page could not reveal": [*words.unseen_lines(self.result)],
+            "The picture": [*self.page.remarks] if self.page else [],
+        }
 
     def pieces(self) -> Iterator[tuple[str, str, str]]:
         """Yield the text in pieces: text, look ("" if unmarked) and note."""
-        place = 0
-        for mark in self.marks:
-            if mark.start > place:
-                yield self.text[place : mark.start], "", ""
-            yield self.text[mark.start : mark.stop] or "‸", mark.look, mark.note
-            place = mark.stop
-        yield self.text[place:], "", ""
+        text, (place, end) = self.result.text, self.result.span
+        for finding in sorted(self.result.findings, key=lambda finding: finding.start):
+            start, stop = max(finding.start, place), min(finding.stop, end)
+            if finding.start >= place and start <= stop:
+                yield text[place:start], "", ""
+                look = LOOKS.get(finding.kind, DOUBT)
+                yield text[start:stop] or "‸", look, words.sentence_of(finding)
+                place = stop
+        yield text[place:end], "", ""
 
 
-def examine(name: str, data: bytes) -> list[Exhibit]:
+def examine(
+    name: str, data: bytes, given: Mapping[str, str] | None = None, listing: str = ""
+) -> list[Exhibit]:
     """Verify every printout of a file.
 
     Parameters
@@ -106,6 +94,10 @@ def examine(name: str, data: bytes) -> list[Exhibit]:
         Name of the file in messages.
     data : bytes
         A text, a PNG, JPEG or TIFF picture, or a PDF.
+    given : mapping of str to str, optional
+        Inputs known from elsewhere, for a page with results only.
+    listing : str, optional
+        A file with an office's own copy of the listing, for texts.
 
     Returns
     -------
@@ -117,96 +109,20 @@ def examine(name: str, data: bytes) -> list[Exhibit]:
     UserError
         For a file that cannot be read, and if no printout is found.
     """
-    digest = sha256(data).hexdigest()
+    pages: list[tuple[Verification, PictureVerification | None]]
     if data.startswith(PICTURE_STARTS):
-        return _examine_picture(name, data)
-    results = judge(read_text(data, name))
-    if not results:
-        raise UserError("no printout found; expected labels and numbers such as MA= 143.5", name)
-    return [of_text(result, f"{name}, printout {k}", digest) for k, result in enumerate(results, 1)]
-
-
-def of_text(result: Verification, source: str, digest: str = "") -> Exhibit:
-    """Return the exhibit of a verified text.
-
-    Parameters
-    ----------
-    result : Verification
-        The verification.
-    source : str
-        The file, and which printout of it.
-    digest : str, optional
-        SHA-256 of the file.
-    """
-    first, end = result.span
-    marks: list[Mark] = []
-    place = first
-    for finding in sorted(result.findings, key=lambda finding: finding.start):
-        start, stop = max(finding.start, first), min(finding.stop, end)
-        if place <= start <= stop:
-            look = LOOKS.get(finding.kind, DOUBT)
-            marks.append(Mark(start - first, stop - first, look, words.sentence_of(finding)))
-            place = stop
-    _, meaning, *sentences = (line.strip() for line in words.write(result, brief=True))
-    scene = " ".join(f"{name} = {text}" for name, text in result.scene.items())
-    sections = {
-        "": tuple(sentences),
-        "inputs with which it was compared": (scene,) if scene else (),
-        "errors that this page could not reveal": tuple(words.unseen_lines(result)),
-    }
-    title, is_adverse = words.TITLES[result.verdict], result.verdict is Verdict.DIFFERS
-    text = result.text[first:end]
-    return Exhibit(source, title, meaning, is_adverse, sections, text, tuple(marks), digest=digest)
-
-
-def _examine_picture(name: str, data: bytes) -> list[Exhibit]:
-    """Verify every printout of a picture or PDF."""
-    results = read_picture(name, data)
+        if listing:
+            raise UserError("--listing goes with texts, not with pictures", name)
+        try:
+            from ..pictures import verify_picture
+        except ImportError as error:
+            message = f"pictures need {error.name}; pip install 'impact88[pictures]'"
+            raise UserError(message, name) from None
+        pages = [(page.verification, page) for page in verify_picture(data, name, scene=given)]
+    else:
+        try:
+            pages = [(result, None) for result in verify(data, given, listing or None)]
+        except UserError as error:
+            raise UserError(str(error).removeprefix("text: "), name) from None
     digest = sha256(data).hexdigest()
-    return [
-        of_picture(result, f"{name}, printout {k}", digest) for k, result in enumerate(results, 1)
-    ]
-
-
-def read_picture(
-    name: str, data: bytes, scene: Mapping[str, str] | None = None
-) -> list[PictureVerification]:
-    """Return the printouts of a picture or PDF.
-
-    Raises
-    ------
-    UserError
-        Also if the extra is not installed.
-    """
-    try:
-        from ..pictures import verify_picture
-    except ImportError as error:
-        raise UserError(
-            f"pictures need {error.name}; pip install 'impact88[pictures]'", name
-        ) from None
-    return verify_picture(data, name, scene=scene)
-
-
-def of_picture(result: PictureVerification, source: str, digest: str = "") -> Exhibit:
-    """Return the exhibit of a verified picture.
-
-    Parameters
-    ----------
-    result : PictureVerification
-        The verification.
-    source : str
-        The file, and which printout of it.
-    digest : str, optional
-        SHA-256 of the file.
-    """
-    from ..pictures.exhibit import draw_page
-
-    page = draw_page(result)
-    outlines = tuple(
-        Outline(" ".join(f"{x:.0f},{y:.0f}" for x, y in corners), look, note)
-        for corners, look, note in page.outlines
-    )
-    text = of_text(result.verification, source, digest)
-    sections = {**text.sections, "the picture": result.remarks} if result.remarks else text.sections
-    picture = Picture(page.uri, page.width, page.height, outlines)
-    return replace(text, sections=sections, picture=picture)
+    return [Exhibit(name, k, *page, digest) for k, page in enumerate(pages, 1)]

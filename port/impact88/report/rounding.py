@@ -1,7 +1,7 @@
 """The one rule of rounding: how many digits of a number a person reads.
 
 A number has four significant digits of the largest number of its group, which is all numbers of an
-answer in one unit; ratios, percentages and angles are rounded on their own. A number with an
+answer in one unit; ratios, percentages and angles have decimals of their own. A number with an
 interval has two significant digits of half the interval's width (GUM 7.2.6)."""
 
 from __future__ import annotations
@@ -13,41 +13,48 @@ from ..names import ANGLE, NUMBER, PERCENT
 
 SIGNIFICANT = 4  # digits: a speed to 0.01 mph, an energy to 0.1 %
 OF_INTERVAL = 2  # digits of a half width (GUM 7.2.6)
-EXTRA = 2  # decimals that a narrow interval may add to those of the group
-MOST_DECIMALS = {NUMBER: 3, PERCENT: 2, ANGLE: 1}
-"""Decimals of quantities that are rounded on their own, at most."""
+EXTRA = 2  # decimals that a narrow interval may add
+DECIMALS = {NUMBER: 3, PERCENT: 2, ANGLE: 1, "bits": 0}
+"""Decimals of quantities that have no group."""
 MAX_PLAIN = 1e9  # from here on with an exponent
 MAX_DECIMALS = 9  # smaller numbers are written with an exponent
 
 
-def decimals_of(numbers: Iterable[float], digits: int = SIGNIFICANT) -> int:
-    """Return the decimals that show ``digits`` significant digits of the largest number.
+def decimals_of(number: float, digits: int = SIGNIFICANT) -> int:
+    """Return the decimals that show ``digits`` significant digits of a number.
 
     Negative for large numbers: -2 rounds to hundreds.
 
     Examples
     --------
-    >>> decimals_of([36.53, -0.02]), decimals_of([123456.0])
+    >>> decimals_of(36.53), decimals_of(123456.0)
     (2, -2)
     """
-    largest = max((abs(x) for x in numbers if math.isfinite(x)), default=0.0)
-    if not largest:
-        return 0
-    return digits - 1 - math.floor(math.log10(largest))
+    return digits - 1 - math.floor(math.log10(abs(number))) if number else 0
 
 
-def own_decimals(rule: str, value: float) -> int | None:
-    """Return the decimals of a ratio, percentage or angle; None for a quantity of a group."""
-    most = MOST_DECIMALS.get(rule)
-    return None if most is None else min(most, max(0, decimals_of([value])) if value else most)
+def decimals_in(rule: str, group: Iterable[float], width: float = 0.0) -> int:
+    """Return the decimals of a number.
 
+    Parameters
+    ----------
+    rule : str
+        The rule of its unit (`impact88.names`).
+    group : iterable of float
+        The numbers with that rule.
+    width : float, default 0
+        Width of its interval.
 
-def decimals_with(interval: tuple[float, float], decimals: int) -> int:
-    """Return the decimals of a number with an interval; ``decimals`` are those without."""
-    half = (interval[1] - interval[0]) / 2
-    if not half or not math.isfinite(half):
+    Examples
+    --------
+    >>> decimals_in("length/time", [36.53, -0.02]), decimals_in("length/time", [36.53], 6.6)
+    (2, 1)
+    """
+    largest = max((abs(x) for x in group if math.isfinite(x)), default=0.0)
+    decimals = DECIMALS.get(rule, decimals_of(largest))
+    if not width or not math.isfinite(width):
         return decimals
-    return min(decimals_of([half], OF_INTERVAL), decimals + EXTRA)
+    return min(decimals_of(width / 2, OF_INTERVAL), decimals + EXTRA)
 
 
 def rounded(value: float, decimals: int) -> str:
@@ -60,9 +67,6 @@ def rounded(value: float, decimals: int) -> str:
     """
     if math.isnan(value):
         return ""
-    if not math.isfinite(value):
-        return str(value)
-    if abs(value) >= MAX_PLAIN or decimals > MAX_DECIMALS:
-        return f"{value:.{SIGNIFICANT - 1}e}" if value else "0"
-    text = f"{round(value, decimals):.{max(0, decimals)}f}"
-    return text.removeprefix("-") if float(text) == 0 else text
+    if abs(value) >= MAX_PLAIN or (value and decimals > MAX_DECIMALS):
+        return f"{value:.{SIGNIFICANT - 1}e}"
+    return f"{round(value, decimals):z.{max(0, min(decimals, MAX_DECIMALS))}f}"

@@ -130,9 +130,8 @@ def verify() -> str:
 
 def verification() -> Response:
     """Return the report on the printouts."""
-    number, examiner, date = (request.form.get(name, "") for name in HEADINGS[1:])
-    page = verification_page(_exhibits(), number=number, examiner=examiner, date=date)
-    return _report(page)
+    headings = {name: request.form.get(name, "") for name in HEADINGS[1:]}
+    return _report(verification_page(_exhibits(), **headings))
 
 
 def collision() -> str:
