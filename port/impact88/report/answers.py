@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from .. import status
@@ -135,13 +135,12 @@ class Answer:
         return {name: row.ends for name, row in self.found.items() if row.ends}
 
     def as_json(self) -> dict[str, Any]:
-        """Return the answer as an object for JSON."""
-        names = ("asked", "question", "evidence", "possible", "remarks", "warnings")
+        """Return the answer as an object for JSON, with a `Row` for each entry and result."""
+        names = ("asked", "question", "evidence", "possible", "given", "remarks", "warnings")
         return {
             **{name: getattr(self, name) for name in names},
             **self.sections,
-            "given": [asdict(row) for row in self.given],
-            "found": [asdict(row) for row in self.found.values()],
+            "found": [*self.found.values()],
             "alternatives": [answer.as_json() for answer in self.alternatives],
         }
 
