@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import impact88
+from impact88.errors import UserError
 
 POINTS = {"M": 4, "MA": 1500.0, "MB": 1200.0}
 SCENE = {
@@ -61,19 +62,20 @@ def test_a_barrier_rests() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "verdict"),
+    ("name", "value", "message"),
     [
-        ("E", -1e-06, "impossible"),
-        ("E", 0, "agrees"),
-        ("E", 1, "agrees"),
-        ("E", 1.001, "impossible"),
-        ("EM", -1.001, "impossible"),
-        ("EM", -1, "agrees"),
-        ("EM", 0, "agrees"),
-        ("EM", 1, "agrees"),
+        ("E", -1e-06, "E is -1e-06; expected 0 to 1"),
+        ("E", 0, ""),
+        ("E", 1, ""),
+        ("E", 1.001, "E is 1.001; expected 0 to 1"),
+        ("EM", -1.001, "EM is -1.001; expected -1 to 0, or 1 for no moment"),
+        ("EM", -1, ""),
+        ("EM", 0, ""),
+        ("EM", 0.5, "EM is 0.5; expected -1 to 0, or 1 for no moment"),
+        ("EM", 1, ""),
     ],
 )
-def test_given_coefficients_are_judged(name: str, value: float, verdict: str) -> None:
+def test_given_coefficients_lie_in_their_ranges(name: str, value: float, message: str) -> None:
     scene = {**SCENE, "MU": 0.0, name: value}
     after = impact88.solve(scene, ["VAX", "VAY", "VBX", "VBY"])
     known = {n: x for n, x in scene.items() if n not in ("UX", "UY", "VX", "VY", "MU")}
@@ -81,7 +83,11 @@ def test_given_coefficients_are_judged(name: str, value: float, verdict: str) ->
     known |= {n: float(x) for n, x in after.items()}
     if value == 0 and name == "E":
         known |= {"UX": scene["UX"], "UY": 0.0}
-    assert impact88.reconstruct(known, samples=0)[0].verdict == verdict
+    if message:
+        with pytest.raises(UserError, match=message):
+            impact88.reconstruct(known, samples=0)
+    else:
+        assert impact88.reconstruct(known, samples=0)[0].verdict == "agrees"
 
 
 def test_ranges_of_motions_left_open_are_named() -> None:

@@ -11,6 +11,7 @@ MODULES = (
     "reconstruction.answer",
     "reconstruction.bounds",
     "reconstruction.unknowns",
+    "reconstruction.words",
     "chapter.colinear",
     "chapter.barrier",
     "chapter.deltav",

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,21 +20,21 @@ from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
 from .draws import MIN_FAMILIES, Sample, sample
-from .fit import EXACT_TOL, TYPED_TOL, Fit, Search, expected_unseen
+from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
-from .problem import ANGLES, ARMS, RANGES, WIDEST, Problem, signs_of_friction, unwrapped
+from .problem import ANGLES, RANGES, WIDEST, Problem, signs_of_friction, unwrapped
 
 CONTRADICTION = 1e-3  # probability of a misfit below which values contradict one another
 LIKELY = 9.0  # sum of squares above the least, up to which an impact is shown
+ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
 TIE = 1e-9  # differences in typical sizes that are rounding
 SOFTENED = 0.01  # tolerance of exact values that contradict one another, in typical sizes
 CHECKED = 0.02  # least part of a variance that counts
 NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
 MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
-STEP = 1e-6  # of difference quotients, in typical sizes; a smaller change is rounding
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
 OUTSIDE = "no impact within all limits was found: intervals are to first order"
@@ -125,8 +125,6 @@ class Reconstruction:
         What was assumed of inputs that are not given.
     verdict : {"agrees", "at a limit", "impossible", "contradictory"}
         Agreement with what is known and with physics.
-    law : MissedLaw or None
-        The law that known values violate most.
     tests : mapping of str to Test
         Measured values beside the others, the one most at odds first.
     solutions : int
@@ -174,7 +172,6 @@ class Reconstruction:
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     assumed: Mapping[str, str] = field(default_factory=dict)
     verdict: str = "agrees"
-    law: MissedLaw | None = None
     tests: Mapping[str, Test] = field(default_factory=dict)
     solutions: int = 1
     draws: Mapping[str, Array] = field(default_factory=dict)
@@ -194,6 +191,11 @@ class Reconstruction:
     point: bool = False
 
     @property
+    def law(self) -> MissedLaw | None:
+        """The law that known values violate most."""
+        return self.laws[0] if self.laws else None
+
+    @property
     def is_adverse(self) -> bool:
         """True if no impact that physics allows agrees with what is known."""
         return self.verdict in ADVERSE
@@ -211,15 +213,16 @@ class Reconstruction:
         UserError
             If an input is not determined.
         """
-        absent = [name for name in SCENE if name not in ("M", "MU") and name not in self.values]
-        if self.point:
-            absent = [name for name in absent if name not in ("EM", "WA", "WB")]
-        if absent or "MUP" not in self.values:
-            names = ", ".join(absent or ["MU"])
+        unused = ("EM", "WA", "WB") if self.point else ()
+        values = {**dict.fromkeys(unused, 0.0), **self.values}
+        inputs = ["MUP" if name == "MU" else name for name in SCENE if name != "M"]
+        if open_names := [name for name in inputs if name not in values]:
+            names = ", ".join(open_names).replace("MUP", "MU")
             raise UserError(f"the impact found leaves {names} open; expected a determined scene")
-        scene = {name: self.values.get(name, 0.0) for name in SCENE if name not in ("M", "MU")}
-        typed, _ = evaluate({**scene, "M": 6.0, "MUP": self.values["MUP"]}, ("MU",))
-        scene["MU"] = float(typed["MU"])
+        scene = {name: values[name] for name in inputs}
+        friction, _ = evaluate({**scene, "M": 6.0}, ("MU",))
+        scene["MU"] = float(friction["MU"])
+        del scene["MUP"]
         return {**scene, "M": 4.0 if self.point else 6.0}
 
 
@@ -273,74 +276,68 @@ def reconstruct(
     if contact_time is not None and not 0 < contact_time < math.inf:
         raise UserError(f"contact time {contact_time} is not positive; expected a duration")
     problems = [Problem(amounts, sign) for sign in signs_of_friction(amounts)]
-    found = _find(problems, seed)
-    results = [_describe(fit, verdict, contact_time) for fit, verdict in found.fits]
-    laws = missed_laws(problems[0].known, problems[0].point)
+    choice = _choose(problems, seed)
     results = [
         replace(
-            result,
-            search=found.search,
-            solutions=found.count,
+            _describe(fit, verdict, contact_time),
+            search=choice.search,
+            solutions=choice.number,
             known={name: amount for name, amount in amounts.items() if name != "M"},
-            laws=laws,
-            law=laws[0] if laws else None,
+            laws=missed_laws(problems[0].known, problems[0].point),
         )
-        for result in results
+        for fit, verdict in choice.fits
     ]
-    if found.agreeing and results[0].verdict == "contradictory":
-        best = min(found.agreeing, key=lambda fit: fit.squares)
-        if best.probability < CONTRADICTION:
-            near = _Neighbourhood(best)
-            results[0] = replace(results[0], tests=_tests(near), evidence=_evidence(near))
+    if choice.best and results[0].verdict == "contradictory":
+        if choice.best.probability < CONTRADICTION:
+            tests, evidence = _tests(choice.best), _evidence(choice.best)
+            results[0] = replace(results[0], tests=tests, evidence=evidence)
         else:  # they agree with each other, but not with physics
-            results[0] = replace(results[0], broken=best.broken())
+            results[0] = replace(results[0], broken=choice.best.violations())
     if samples and results[0].verdict in ("agrees", "at a limit"):
-        results = _with_draws(results, found.fits, problems, samples, seed, progress)
+        fits = [fit for fit, _ in choice.fits]
+        results = _with_draws(results, fits, samples, seed, progress)
     return results
 
 
 # -- which impacts
 
 
-@dataclass
-class _Found:
-    """Impacts with their verdicts, all fits that agree with exact values, and search facts."""
+class _Choice(NamedTuple):
+    """Impacts with their verdicts, the number that agrees, facts of the search, and the ``best``
+    impact without regard to physics."""
 
     fits: list[tuple[Fit, str]]
-    agreeing: list[Fit]
-    count: int
+    number: int
     search: tuple[int, int, float]
+    best: Fit | None
 
 
-def _find(problems: Sequence[Problem], seed: int) -> _Found:
+def _choose(problems: Sequence[Problem], seed: int) -> _Choice:
     """Return the impacts that agree with what is known, in order, or the nearest."""
     fits: list[Fit] = []
-    ended = 0
+    ends = 0
     for problem in problems:
         minima, number = Search(problem).run(seed)
         fits += minima
-        ended += number
-    exact = sum(fit.missed < EXACT_TOL for fit in fits)
-    search = (ended, exact, expected_unseen(exact, ended) if exact else 0.0)
-    agreeing = [fit for fit in fits if fit.missed <= EXACT_TOL and _opposes_sliding(fit)]
+        ends += number
+    exact = sum(fit.misfit < EXACT_TOL for fit in fits)
+    search = (ends, exact, expected_unseen(exact, ends) if exact else 0.0)
+    agreeing = [fit for fit in fits if fit.misfit <= EXACT_TOL and _opposes_sliding(fit)]
+    best = min(agreeing, key=lambda fit: fit.squares, default=None)
     consistent = [fit for fit in agreeing if fit.probability >= CONTRADICTION]
-    possible = [fit for fit in consistent if not fit.broken()]
+    possible = _in_order([fit for fit in consistent if not fit.violations()])
     if possible:
-        chosen = _ordered(possible)
-        return _Found([(fit, "agrees") for fit in chosen], agreeing, len(chosen), search)
-    broken = [(fit, "impossible") for fit in _ordered(consistent)]
-    nearest, softened = _nearest(problems, fits, agreeing, seed)
-    if nearest and nearest[0][1] == "agrees":
-        chosen_fits = nearest
-    elif broken and softened:  # exact values lead to an impossible impact: it first
-        chosen_fits = broken[:1] + nearest
-    else:
-        chosen_fits = nearest + broken[:1]
-    if not chosen_fits:
+        return _Choice([(fit, "agrees") for fit in possible], len(possible), search, best)
+    impossible = [(fit, "impossible") for fit in _in_order(consistent)]
+    nearest, verdict, is_softened = _nearest(problems, fits, best, seed)
+    choice = [(nearest, verdict)] if nearest else []
+    if verdict != "agrees":  # exact values that lead to an impossible impact: it first
+        choice = impossible[:1] + choice if is_softened else choice + impossible[:1]
+    if not choice:
         raise UserError(
             "no impact comes near what is known; expected velocities and masses in one set of units"
         )
-    return _Found(chosen_fits, agreeing, len(broken), search)
+    return _Choice(choice, len(impossible), search, best)
 
 
 def _opposes_sliding(fit: Fit) -> bool:
@@ -349,7 +346,7 @@ def _opposes_sliding(fit: Fit) -> bool:
     return not problem.sign or -problem.sign * fit.value("gt") >= -TIE * problem.speed
 
 
-def _ordered(fits: Sequence[Fit]) -> list[Fit]:
+def _in_order(fits: Sequence[Fit]) -> list[Fit]:
     """Return fits by physics, misfit and energy, without those much worse than the best, and
     without vehicles that drive backwards along a known course unless all do."""
     forward = [fit for fit in fits if not driving_backwards(fit)] or list(fits)
@@ -366,8 +363,8 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
     numbers += [fit.value("SA" + x) + fit.value("SB" + x) for x in ("", "F")]
     numbers.append(abs(fit.value("MUP")))
     misfit = float(f"{max(fit.squares, TIE):.6e}")
-    rounded = (float(f"{x:.5e}") if abs(x) > TIE else 0.0 for x in numbers)
-    return (bool(fit.broken()), misfit, bool(fit.broken(friction=True)), *rounded)
+    ties = [float(f"{x:.5e}") if abs(x) > TIE else 0.0 for x in numbers]
+    return (misfit, bool(fit.violations(friction=True)), *ties)
 
 
 def driving_backwards(fit: Fit) -> list[str]:
@@ -377,131 +374,96 @@ def driving_backwards(fit: Fit) -> list[str]:
 
 
 def _nearest(
-    problems: Sequence[Problem], fits: Sequence[Fit], agreeing: Sequence[Fit], seed: int
-) -> tuple[list[tuple[Fit, str]], bool]:
-    """Return the admissible impact nearest to what is known, and whether exact values had to be
-    softened to one tolerance because no admissible impact has them all."""
-    if problems[0].forbidden:
-        return [], True
-    for soften in (False, True) if agreeing else (True,):
-        limited: list[Fit] = []
-        for problem in problems:
-            search = Search(problem.softened(SOFTENED) if soften else problem, limited=True)
-            near = [fit for fit in fits if fit.problem is problem]
-            first = [np.array([fit.value(name) for name in search.names]) for fit in near]
-            limited += search.run(seed, [point for point in first if np.isfinite(point).all()])[0]
-        limited = [fit for fit in limited if fit.missed <= 1e-5]
-        if not limited:
-            continue
-        best = min(limited, key=lambda fit: fit.squares)
-        if soften:
-            rounding = min((fit.missed for fit in fits), default=1.0) < TYPED_TOL and not agreeing
-            return [(best, "agrees" if rounding else "contradictory")], True
-        if best.probability < CONTRADICTION:
-            return [(best, "contradictory")], False
-        fits_best = best.squares <= min(fit.squares for fit in agreeing) + 1e-6
-        return [(best, "agrees" if fits_best else "at a limit")], False
-    return [], True
+    problems: Sequence[Problem], fits: Sequence[Fit], best: Fit | None, seed: int
+) -> tuple[Fit | None, str, bool]:
+    """Return the admissible impact nearest to what is known, its verdict, and whether exact values
+    had to be softened to one tolerance because no admissible impact has them all."""
+    fit = _best_within_limits(problems, fits, False, seed) if best else None
+    if best and fit:
+        if fit.probability < CONTRADICTION:
+            return fit, "contradictory", False
+        return fit, "agrees" if fit.squares <= best.squares + 1e-6 else "at a limit", False
+    fit = _best_within_limits(problems, fits, True, seed)
+    is_rounding = not best and min((fit.misfit for fit in fits), default=1.0) < TYPED_TOL
+    return fit, "agrees" if fit and is_rounding else "contradictory", True
+
+
+def _best_within_limits(
+    problems: Sequence[Problem], fits: Sequence[Fit], softens: bool, seed: int
+) -> Fit | None:
+    """Return the admissible impact with the least sum of squares, None if there is none."""
+    admissible: list[Fit] = []
+    for problem in problems:
+        search = Search(problem.softened(SOFTENED) if softens else problem, limited=True)
+        starts = [
+            np.array([fit.value(name) for name in search.names])
+            for fit in fits
+            if fit.problem is problem
+        ]
+        minima, _ = search.run(seed, [point for point in starts if np.isfinite(point).all()])
+        admissible += [fit for fit in minima if fit.misfit <= ADMISSIBLE_TOL]
+    return min(admissible, key=lambda fit: fit.squares, default=None)
 
 
 # -- one impact
 
 
-class _Neighbourhood:
-    """A fit with the impacts around it: values, and slopes along ``shifts`` of the coordinates."""
-
-    def __init__(self, fit: Fit) -> None:
-        self.fit, self.problem = fit, fit.problem
-        self.impacts = fit.problem.impacts(fit.names, fit.point[None])
-        self.open = fit.open_directions.shape[1]
-        self._shifts = np.concatenate([fit.open_directions.T, fit.sensitivity.T])
-        sizes = np.array([fit.problem.size(name) for name in fit.names])
-        self._lengths = np.abs(self._shifts / sizes).max(1, initial=1e-300)[:, None]
-        steps = STEP * self._shifts / self._lengths
-        self._moved = fit.problem.impacts(fit.names, fit.point + np.concatenate([steps, -steps]))
-
-    def value(self, name: str) -> float:
-        """Return a result of the impact."""
-        with np.errstate(all="ignore"):
-            return float(np.ravel(self.problem.quantity(self.impacts, name))[0])
-
-    def slopes(self, name: str) -> Array:
-        """Return changes of a result: along open directions, then by a standard deviation of each
-        measured value."""
-        count = len(self._shifts)
-        with np.errstate(all="ignore"):
-            column = self.problem.quantity(self._moved, name)
-        column = np.broadcast_to(column, 2 * count)
-        change = column[:count] - column[count:]
-        if name in ANGLES:
-            change = (change + 180.0) % 360.0 - 180.0
-        return np.asarray(change / (2 * STEP) * self._lengths[:, 0])
-
-    def open_slopes(self, name: str) -> Array:
-        """Return changes of a result along open directions, in typical sizes."""
-        lengths = self._lengths[: self.open, 0]
-        return np.asarray(self.slopes(name)[: self.open] / lengths / self.problem.size(name))
-
-    def is_open(self, name: str) -> bool:
-        """Return True for a result that the known values leave open."""
-        return bool((np.abs(self.open_slopes(name)) > STEP).any())
-
-
 def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruction:
     """Return an impact with everything that is determined, and first-order deviations."""
-    problem, near = fit.problem, _Neighbourhood(fit)
-    names = [n for n in result_names(problem) if _exists(near, n)]
-    undetermined = [name for name in names if near.is_open(name)]
-    settled = [name for name in names if name not in undetermined]
-    values = {n: _without_noise(n, near.value(n), problem.size(n)) for n in settled}
-    slopes = {name: near.slopes(name)[near.open :] for name in settled}
+    problem = fit.problem
+    names = [name for name in result_names(problem) if _exists(fit, name)]
+    open_names = [name for name in names if fit.is_open(name)]
+    names = [name for name in names if name not in open_names]
+    values = {name: _without_noise(name, fit.value(name), problem.size(name)) for name in names}
+    count = fit.open_directions.shape[1]
+    slopes = {name: fit.slopes(name)[count:] for name in names}
     if contact_time is not None and "P" in values:
         values["TF"] = contact_time
         for name, times in (("FA", 1.0), ("FM2", 2.0), ("FM3", 3.0)):  # chapter, Section III
             values[name] = times * values["P"] / contact_time
             slopes[name] = times * slopes["P"] / contact_time
     deviations = {name: float(np.sqrt(np.square(s).sum())) for name, s in slopes.items()}
-    is_adverse = verdict in ADVERSE  # its numbers settle nothing
-    reach = NormalDist().inv_cdf(INTERVAL[1])
-    remarks = [*problem.remarks]
-    for name in driving_backwards(fit):
-        remarks.append(
-            f"{name[1]} drives backwards along its known course H{name[1:]}: no impact was found "
-            "in which it does not"
-        )
-    return Reconstruction(
-        values=values | _inputs(near),
-        intervals={}
-        if is_adverse
-        else {
+    intervals: dict[str, tuple[float, float]] = {}
+    drivers: dict[str, dict[str, float]] = {}
+    if verdict not in ADVERSE:  # the numbers of an adverse one settle nothing
+        reach = NormalDist().inv_cdf(INTERVAL[1])
+        intervals = {
             name: (values[name] - reach * sd, values[name] + reach * sd)
             for name, sd in deviations.items()
             if sd > TIE * abs(values[name])
-        },
-        assumed=problem.assumed | _unlimited(problem, undetermined),
+        }
+        drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
+    vehicles = {name: fit.value(name) for name in VEHICLES}
+    backwards = [
+        f"{name[1]} drives backwards along its known course H{name[1:]}: no impact was found in "
+        "which it does not"
+        for name in driving_backwards(fit)
+    ]
+    return Reconstruction(
+        values=values | {name: value for name, value in vehicles.items() if math.isfinite(value)},
+        intervals=intervals,
+        assumed=problem.assumed | _motion_ranges(problem, open_names),
         verdict=verdict,
-        tests=_tests(near),
+        tests=_tests(fit),
         deviations=deviations,
-        evidence=_evidence(near),
-        broken=_broken(fit, verdict),
-        drivers={}
-        if is_adverse
-        else {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()},
+        evidence=_evidence(fit),
+        broken=_conditions(fit, verdict),
+        drivers=drivers,
         correlations=_correlations(slopes),
-        undetermined=tuple(undetermined),
-        advice=_advice(near, undetermined),
+        undetermined=tuple(open_names),
+        advice=_advice(fit, open_names),
         excluded=problem.excluded,
-        remarks=tuple(remarks),
+        remarks=(*problem.remarks, *backwards),
         point=problem.point,
     )
 
 
-def _unlimited(problem: Problem, undetermined: Sequence[str]) -> dict[str, str]:
+def _motion_ranges(problem: Problem, open_names: Sequence[str]) -> dict[str, str]:
     """Return the ranges of the motions that are left open."""
     return {
         item.name: f"up to {WIDEST:g} times the largest motion given"
         for item in problem.coordinates
-        if item.name not in problem.known and {item.name} & {*undetermined} & {*BEFORE, *SPEEDS}
+        if item.name not in problem.known and {item.name} & {*open_names} & {*BEFORE, *SPEEDS}
     }
 
 
@@ -515,12 +477,11 @@ def result_names(problem: Problem) -> list[str]:
     return names
 
 
-def _exists(near: _Neighbourhood, name: str) -> bool:
+def _exists(fit: Fit, name: str) -> bool:
     """Return False for quotients of 0 and for the course of a vehicle at rest."""
-    if not math.isfinite(near.value(name)):
+    if not math.isfinite(fit.value(name)):
         return False
-    at_rest = name in COURSES and near.value(COURSES[name]) < TIE * near.problem.speed
-    return not at_rest
+    return name not in COURSES or fit.value(COURSES[name]) >= TIE * fit.problem.speed
 
 
 def _without_noise(name: str, value: float, size: float) -> float:
@@ -530,55 +491,34 @@ def _without_noise(name: str, value: float, size: float) -> float:
     return value if abs(value) > TIE * size else 0.0
 
 
-def _inputs(near: _Neighbourhood) -> dict[str, float]:
-    """Return the vehicles of the impact, for a scene."""
-    problem, inputs = near.problem, {}
-    for name in VEHICLES:
-        point_arm = problem.point and name in (*ARMS, "TA", "TB")
-        if not point_arm or name in ("TA", "TB"):
-            inputs[name] = near.value(name)
-    inputs = {name: value for name, value in inputs.items() if math.isfinite(value)}
-    if problem.point:
-        inputs |= {"IA": 1.0, "IB": 1.0, "DA": 0.0, "DB": 0.0, "PA": 0.0, "PB": 0.0}
-    return inputs
-
-
-def _broken(fit: Fit, verdict: str) -> dict[str, float]:
-    """Return the conditions that an impossible impact breaks, or at which a limited one lies."""
+def _conditions(fit: Fit, verdict: str) -> dict[str, float]:
+    """Return the conditions that an impossible impact violates, or at which a limited one lies."""
     if verdict == "impossible":
-        return fit.broken()
-    if verdict != "at a limit":
-        return {}
-    impacts = fit.problem.impacts(fit.names, fit.point[None])
-    margins = fit.problem.margins(impacts)
-    return {name: 0.0 for name, margin in margins if float(np.ravel(margin)[0]) < STEP}
+        return fit.violations()
+    if verdict == "at a limit":
+        return {name: 0.0 for name, margin in fit.margins().items() if margin < RESULT_STEP}
+    return {}
 
 
 # -- how far the known values agree
 
 
-def _evidence(near: _Neighbourhood) -> Evidence:
-    fit = near.fit
-    return Evidence(fit.squares, fit.redundancy, fit.probability, _at_odds(_tests(near)))
+def _evidence(fit: Fit) -> Evidence:
+    return Evidence(fit.squares, fit.redundancy, fit.probability, _at_odds(_tests(fit)))
 
 
-def _tests(near: _Neighbourhood) -> dict[str, Test]:
+def _tests(fit: Fit) -> dict[str, Test]:
     """Return the measured values beside the others, the one most at odds first."""
-    fit, problem = near.fit, near.problem
     tests = {}
-    for k, item in enumerate(fit.measured):
-        sd = item.sd
-        misfit = float(np.ravel(problem.misses(near.impacts, item))[0])
-        checked = 1.0 - float(fit.leverage[k])  # part of an error that the adjustment shows
-        if checked <= CHECKED:
-            misfit_of_others, residual = 0.0, 0.0
-        else:
-            misfit_of_others = misfit / checked
-            residual = misfit / (sd * math.sqrt(checked))
-        measured = item.amount.value
-        tests[item.name] = Test(
-            measured, measured + misfit, measured + misfit_of_others, sd, residual
-        )
+    for item, leverage in zip(fit.measured, fit.leverage.tolist(), strict=True):
+        measurement, sd = item.amount.value, item.sd
+        misfit = float(np.ravel(fit.problem.misfit(fit.impacts, item))[0])
+        visible = 1.0 - leverage  # part of an error that the adjustment shows
+        if visible <= CHECKED:
+            visible = math.inf  # no other value checks it
+        by_others = measurement + misfit / visible
+        residual = misfit / (sd * math.sqrt(visible)) + 0.0
+        tests[item.name] = Test(measurement, measurement + misfit, by_others, sd, residual)
     return dict(sorted(tests.items(), key=lambda pair: -abs(pair[1].residual)))
 
 
@@ -588,8 +528,8 @@ def _at_odds(tests: Mapping[str, Test]) -> tuple[str, ...]:
     largest = max((test.residual**2 for test in tests.values()), default=0.0)
     if largest < 1.0:
         return ()
-    together = [n for n, test in tests.items() if test.residual**2 >= NAMED_RATIO * largest]
-    return tuple(sorted(together, key=lambda name: tests[name].move)[:MAX_NAMED])
+    names = [n for n, test in tests.items() if test.residual**2 >= NAMED_RATIO * largest]
+    return tuple(sorted(names, key=lambda name: tests[name].move)[:MAX_NAMED])
 
 
 # -- what results depend on
@@ -605,30 +545,33 @@ def _drivers(fit: Fit, slope: Array) -> dict[str, float]:
 
 def _correlations(slopes: Mapping[str, Array]) -> dict[tuple[str, str], float]:
     """Return correlations of the results that are not determined by exact values alone."""
-    varied = [name for name in CORRELATED if name in slopes and slopes[name].any()]
-    unit = {name: slopes[name] / np.sqrt(np.square(slopes[name]).sum()) for name in varied}
+    names = [name for name in CORRELATED if name in slopes and slopes[name].any()]
+    unit = {name: slopes[name] / np.sqrt(np.square(slopes[name]).sum()) for name in names}
     return {
         (first, second): float((unit[first] * unit[second]).sum())
-        for k, first in enumerate(varied)
-        for second in varied[:k]
+        for k, first in enumerate(names)
+        for second in names[:k]
     }
 
 
-def _advice(near: _Neighbourhood, undetermined: Sequence[str]) -> tuple[str, ...]:
+def _advice(fit: Fit, open_names: Sequence[str]) -> tuple[str, ...]:
     """Return values that would determine the results left open: each of them is independent, over
     the open directions, of those named before."""
     names: list[str] = []
-    rows = np.empty((0, near.open))
-    relevant = [near.open_slopes(name) for name in undetermined]
-    needed = np.linalg.matrix_rank(np.stack(relevant), STEP) if relevant else 0
+    rows: list[Array] = []
+    slopes = {name: fit.open_slopes(name) for name in open_names}
+    number = _rank_of_rows([*slopes.values()])
     for name in ADVICE:
-        if name in near.problem.known or name not in undetermined or len(names) == needed:
+        if name in fit.problem.known or name not in slopes or len(rows) == number:
             continue
-        more = np.concatenate([rows, near.open_slopes(name)[None]])
-        if np.linalg.matrix_rank(more, STEP) > len(rows):
-            rows = more
+        if _rank_of_rows([*rows, slopes[name]]) > len(rows):
+            rows.append(slopes[name])
             names.append(name)
     return tuple(names)
+
+
+def _rank_of_rows(rows: Sequence[Array]) -> int:
+    return int(np.linalg.matrix_rank(np.stack(rows), RESULT_STEP)) if rows else 0
 
 
 # -- draws
@@ -636,68 +579,62 @@ def _advice(near: _Neighbourhood, undetermined: Sequence[str]) -> tuple[str, ...
 
 def _with_draws(
     results: Sequence[Reconstruction],
-    fits: Sequence[tuple[Fit, str]],
-    problems: Sequence[Problem],
+    fits: Sequence[Fit],
     samples: int,
     seed: int,
     progress: Callable[[float], object] | None,
 ) -> list[Reconstruction]:
     """Return results with draws, intervals and bounds, where anything varies."""
-    if not any(fit.sensitivity.any() or fit.open_directions.size for fit, _ in fits):
+    if not any(fit.sensitivity.any() or fit.open_directions.size for fit in fits):
         return list(results)
-    drawn: dict[int, Sample | None] = {}
-    extended = []
-    for result, (fit, _) in zip(results, fits, strict=True):
-        key = id(fit.problem)
-        if key not in drawn and fit.problem.coordinates:
-            drawn[key] = sample(fit.problem, samples, seed, progress=progress)
-        extended.append(_with_sample(result, drawn.get(key), seed))
-    return extended
+    draws = {
+        problem: sample(problem, samples, seed, progress=progress)
+        for problem in dict.fromkeys(fit.problem for fit in fits)
+        if problem.coordinates
+    }
+    pairs = zip(results, fits, strict=True)
+    return [_with_sample(result, draws.get(fit.problem), seed) for result, fit in pairs]
 
 
-def _with_sample(result: Reconstruction, drawn: Sample | None, seed: int) -> Reconstruction:
+def _with_sample(result: Reconstruction, draws: Sample | None, seed: int) -> Reconstruction:
     """Return a result with the intervals and bounds of draws."""
-    if drawn is None:
+    if draws is None:
         return replace(result, remarks=(*result.remarks, OUTSIDE))
-    if drawn.families < MIN_FAMILIES:
+    if draws.families < MIN_FAMILIES:
         remark = (
-            f"the draws tell no more than {drawn.families:.0f} independent ones would: intervals "
+            f"the draws tell no more than {draws.families:.0f} independent ones would: intervals "
             "are to first order; narrower tolerances help"
         )
         return replace(result, remarks=(*result.remarks, remark))
-    names = [
-        n for n in result_names(drawn.problem) if n in result.values or n in result.undetermined
-    ]
-    columns = {name: unwrapped(name, drawn[name], result.values.get(name)) for name in names}
-    columns = {name: x for name, x in columns.items() if np.isfinite(x).all()}
-    intervals = dict(result.intervals)
-    for name, column in columns.items():
-        if name in result.undetermined or name in intervals:
-            low, high = np.quantile(column, INTERVAL).tolist()
-            intervals[name] = (low, high)
-    bounded = [name for name in BOUNDED if name in intervals and name in result.values]
+    columns, intervals = {}, dict(result.intervals)
+    for name in result_names(draws.problem):
+        if name not in result.values and name not in result.undetermined:
+            continue
+        column = unwrapped(name, draws[name], result.values.get(name))
+        if np.isfinite(column).all():
+            columns[name] = column
+            if name in result.undetermined or name in intervals:
+                low, high = np.quantile(column, INTERVAL).tolist()
+                intervals[name] = (low, high)
+    names = [name for name in BOUNDED if name in intervals and name in result.values]
     return replace(
         result,
         intervals=intervals,
         draws=columns,
-        bounds=drawn.bounds(bounded, seed) if bounded else {},
-        assumed=_reached(result.assumed, columns),
+        bounds=draws.bounds(names, seed) if names else {},
+        assumed=_with_ends(result.assumed, columns),
     )
 
 
-def _reached(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[str, str]:
+def _with_ends(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[str, str]:
     """Return what was assumed, with the ends of ranges that intervals reach: these follow from the
     range, not from what is known."""
     words = dict(assumed)
-    for name in ("E", "EM"):
-        if name not in assumed or name not in columns:
-            continue
+    for name in {*RANGES} & {*assumed} & {*columns}:
         low, high = RANGES[name]
         first, last = np.quantile(columns[name], INTERVAL).tolist()
         margin = NARROWED * (high - low)
-        ends = [
-            f"{end:g}" for end, near in ((low, first - low), (high, high - last)) if near < margin
-        ]
+        ends = [f"{low:g}"] * (first - low < margin) + [f"{high:g}"] * (high - last < margin)
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"
     return words

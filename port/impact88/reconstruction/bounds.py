@@ -17,8 +17,8 @@ import numpy as np
 from ..cases.amounts import Amount
 from ..cases.motion import contact_point, line_of_motion
 from ..errors import UserError
-from ..mechanics.solve import evaluate
-from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, quantity, split_names
+from ..mechanics.solve import BODIES, POINT, evaluate
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
 from ..status import Status
 from .densities import correlated
 from .extremes import box_seeds, extremes
@@ -30,7 +30,7 @@ OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
 RANKED_DRAWS = 20_000  # used for rank correlations: standard error 0.007
 SWEEP_POINTS = 21  # of each input alone: the top of a parabola is missed by 0.3 % at most
-MAX_DRAWS = 100_000_000  # of all outputs together: 800 MB
+MAX_DRAWS = 10_000_000  # 80 MB for each output
 BOUNDED = (*RESULTS, *SPEEDS, *COURSES, *FORCES, "DVAF", "DVAR", "DVBF", "DVBR", "EL", "DT")
 INPUTS = (*SCENE, *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
 
@@ -87,8 +87,8 @@ class Bounds:
 
     Examples
     --------
-    >>> found = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, "LOSS", samples=100)
-    >>> round(found.outputs["LOSS"].lower, 2), found.outputs["LOSS"].at_lower
+    >>> answer = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, "LOSS", samples=100)
+    >>> round(answer.outputs["LOSS"].lower, 2), answer.outputs["LOSS"].at_lower
     (52.93, {'MU': 0.7})
     """
 
@@ -102,12 +102,11 @@ class Bounds:
 class _Box:
     """The inputs: exact ones, and the limits of those that vary."""
 
-    def __init__(self, amounts: Mapping[str, Amount], sigmas: float) -> None:
-        amounts = {"M": Amount.exactly(6.0), **contact_point(amounts)}
-        if amounts["M"].value == 4:
+    def __init__(self, amounts: Mapping[str, Amount]) -> None:
+        amounts = {"M": Amount.exactly(BODIES), **contact_point(amounts)}
+        if amounts["M"].value == POINT:
             amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
-        if amounts["M"].value == 4 and "GA" not in amounts:
-            line, _ = line_of_motion(amounts)
+            line = None if "GA" in amounts else line_of_motion(amounts)[0]
             if line is not None:  # nothing acts along the plane
                 amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
         self.varied = {name: amount for name, amount in amounts.items() if amount.varies}
@@ -115,22 +114,22 @@ class _Box:
             raise UserError("no value is known within limits; expected one such as 0.7 .. 0.9")
         self.exact = {name: a.value for name, a in amounts.items() if not a.varies}
         self.share = "MU" in amounts and amounts["MU"].share
-        limits = [amount.limits(sigmas) for amount in self.varied.values()]
-        self.low, self.high = np.array(limits).T
+        self.low, self.high = np.array([amount.limits() for amount in self.varied.values()]).T
         self.nominal = np.array([[amount.value for amount in self.varied.values()]])
 
-    def results(self, points: Array, wanted: Sequence[str]) -> dict[str, Array]:
-        """Return results of inputs (rows); those that need more inputs are left out."""
+    def results(
+        self, points: Array, wanted: Sequence[str]
+    ) -> tuple[dict[str, Array], dict[str, tuple[str, ...]]]:
+        """Return results of inputs (rows), and the inputs that other results lack."""
         columns = placed({**self.exact, **dict(zip(self.varied, points.T, strict=True))})
-        with np.errstate(all="ignore"):
-            if self.share:
-                critical, lacking = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
-                if lacking:
-                    raise UserError(_needs(lacking))
-                turn = np.where(critical["gt"] > 0, -1.0, 1.0)  # line 400 turns it again
-                columns["MU"] = turn * columns["MU"] * critical["MUC"]
-            values, _ = evaluate(columns, wanted)
-        return {name: np.broadcast_to(x, len(points)) for name, x in values.items()}
+        if self.share:
+            values, _ = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
+            if "MUC" not in values:
+                raise UserError("MU is a share of MUC, which needs a complete scene")
+            turn = np.where(values["gt"] > 0, -1.0, 1.0)  # line 400 turns it again
+            columns["MU"] = turn * columns["MU"] * values["MUC"]
+        values, lacking = evaluate(columns, wanted)
+        return {name: np.broadcast_to(x, len(points)) for name, x in values.items()}, lacking
 
 
 def bounds(
@@ -140,8 +139,6 @@ def bounds(
     samples: int = 100_000,
     seed: int = 0,
     correlations: Mapping[tuple[str, str], float] | None = None,
-    sigmas: float = 3.0,
-    exclude: Sequence[str] = (),
 ) -> Bounds:
     """Return bounds, quantiles and drivers of the results of a scene known within limits.
 
@@ -159,10 +156,6 @@ def bounds(
         Random seed.
     correlations : mapping of (str, str) to float, optional
         Correlations of inputs (of the normal variates of a Gaussian copula).
-    sigmas : float, default 3
-        Where normal inputs without limits end for the bounds, in standard deviations.
-    exclude : sequence of str, optional
-        STATUS bits whose scenes are left out.
 
     Returns
     -------
@@ -177,44 +170,47 @@ def bounds(
 
     Notes
     -----
-    Equations 13 to 18; differential evolution over the box of the limits.
+    Equations 13 to 18; differential evolution over the box of the limits, in which a normal input
+    ends at three standard deviations.
 
     Examples
     --------
-    >>> found = impact88.bounds({**impact88.sample(1), "GA": "-30 +- 5"}, ["DVA"], samples=100)
-    >>> round(found.outputs["DVA"].lower, 2), round(found.outputs["DVA"].upper, 2)
+    >>> answer = impact88.bounds({**impact88.sample(1), "GA": "-30 +- 5"}, ["DVA"], samples=100)
+    >>> round(answer.outputs["DVA"].lower, 2), round(answer.outputs["DVA"].upper, 2)
     (13.42, 18.37)
     """
-    box = _Box(as_amounts(values, INPUTS), sigmas)
-    names = _outputs(box, outputs)
-    check_names(exclude, [bit.name or "" for bit in Status], "warning")
-    unwanted = sum(int(Status[name]) for name in exclude)
-    if not 2 <= samples <= MAX_DRAWS // max(len(names), 1):
-        raise UserError(f"{samples} samples; expected 2 to {MAX_DRAWS // max(len(names), 1):,}")
-
-    middle = {n: float(x[0]) for n, x in box.results(box.nominal, names).items()}
+    box = _Box(as_amounts(values, INPUTS))
+    names = list(dict.fromkeys(OUTPUTS if outputs is None else split_names(outputs)))
+    check_names(names, BOUNDED, "result")
+    middle, lacking = box.results(box.nominal, names)
+    if lacking and (outputs is not None or not middle):
+        name, inputs = next(iter(lacking.items()))
+        raise UserError(f"{name} cannot be computed: {missing(inputs)}")
+    names = list(middle)
+    if not 2 <= samples <= MAX_DRAWS:
+        raise UserError(f"{samples} samples; expected 2 to {MAX_DRAWS:,}")
 
     def table(points: Array) -> Array:
-        results = box.results(points, (*names, "STATUS"))
-        bits = results.get("STATUS", np.zeros(len(points))).astype(int)
-        columns = np.stack([unwrapped(n, results[n], middle.get(n)) for n in names], 1)
-        usable = np.isfinite(columns) & (bits & unwanted == 0)[:, None]
-        return np.where(usable, columns, np.nan)
+        results, _ = box.results(points, names)
+        columns = [unwrapped(name, results[name], float(middle[name][0])) for name in names]
+        return np.where(np.isfinite(columns), columns, np.nan).T
 
     rng = np.random.default_rng([seed, 0])
     seeds = np.concatenate([box.nominal, box_seeds(box.low, box.high, rng)])
     ends, points = extremes(table, seeds, (box.low, box.high), rng)
-    drawn = correlated(box.varied, samples, np.random.default_rng([seed, 1]), correlations or {})
-    draws = table(drawn)
+    inputs_drawn = correlated(
+        box.varied, samples, np.random.default_rng([seed, 1]), correlations or {}
+    )
+    draws = table(inputs_drawn)
     if not np.isfinite(draws).any(0).all() or not np.isfinite(ends).all():
         raise UserError("no scene within these limits has a finite result; expected others")
-    drivers = _drivers(box, table, drawn[:RANKED_DRAWS], draws[:RANKED_DRAWS])
+    drivers = _drivers(box, table, inputs_drawn[:RANKED_DRAWS], draws[:RANKED_DRAWS])
     quantiles = np.nanquantile(draws, QUANTILES, axis=0)
     nominal = table(box.nominal)[0]
-    found = {}
+    results = {}
     for k, name in enumerate(names):
         at_lower, at_upper = (dict(zip(box.varied, p.tolist(), strict=True)) for p in points[:, k])
-        found[name] = Bound(
+        results[name] = Bound(
             nominal=float(nominal[k]),
             lower=float(ends[0, k]),
             upper=float(ends[1, k]),
@@ -223,53 +219,33 @@ def bounds(
             quantiles=dict(zip(QUANTILES, quantiles[:, k].tolist(), strict=True)),
             drivers=drivers[k],
         )
-    columns = {name: draws[:, k] for k, name in enumerate(names)}
-    return Bounds(box.varied, found, _warnings(box, drawn), samples, columns)
-
-
-def _outputs(box: _Box, outputs: Sequence[str] | str | None) -> list[str]:
-    """Return the results wanted. Raises UserError for one that needs more inputs."""
-    names = list(dict.fromkeys(OUTPUTS if outputs is None else split_names(outputs)))
-    check_names(names, BOUNDED, "result")
-    columns = placed({**box.exact, **dict(zip(box.varied, box.nominal[0], strict=True))})
-    _, lacking = evaluate(columns, names)
-    if lacking and (outputs is not None or len(lacking) == len(names)):
-        raise UserError(_needs(lacking))
-    return [name for name in names if name not in lacking]
-
-
-def _needs(lacking: Mapping[str, Sequence[str]]) -> str:
-    name, inputs = next(iter(lacking.items()))
-    parts = [f"{n} ({quantity(n).meaning})" if n in SCENE else n for n in inputs]
-    return f"{name} needs {', '.join(parts)}"
+    columns = dict(zip(names, draws.T, strict=True))
+    return Bounds(box.varied, results, _warnings(box, inputs_drawn), samples, columns)
 
 
 def _drivers(
-    box: _Box, table: Callable[[Array], Array], drawn: Array, draws: Array
+    box: _Box, table: Callable[[Array], Array], inputs: Array, draws: Array
 ) -> list[dict[str, tuple[float, float]]]:
     """Return for each output the inputs with rank correlation and effect alone, largest first."""
-    count = len(box.varied)
-    alone = np.repeat(box.nominal, count * SWEEP_POINTS, 0).reshape(count, SWEEP_POINTS, count)
-    for k in range(count):
-        alone[k, :, k] = np.linspace(box.low[k], box.high[k], SWEEP_POINTS)
-    swept = table(alone.reshape(-1, count)).reshape(count, SWEEP_POINTS, -1)
-    effects = np.nanmax(swept, 1) - np.nanmin(swept, 1)
+    effects = []
+    for k in range(len(box.varied)):
+        sweep = np.repeat(box.nominal, SWEEP_POINTS, 0)
+        sweep[:, k] = np.linspace(box.low[k], box.high[k], SWEEP_POINTS)
+        results = table(sweep)
+        effects.append(np.nanmax(results, 0) - np.nanmin(results, 0))
     drivers = []
-    for k in range(draws.shape[1]):
-        pairs = {
-            name: (rank_correlation(drawn[:, i], draws[:, k]), float(effects[i, k]))
-            for i, name in enumerate(box.varied)
-        }
-        drivers.append(dict(sorted(pairs.items(), key=lambda pair: -pair[1][1])))
+    for column, ranges in zip(draws.T, np.transpose(effects).tolist(), strict=True):
+        ranks = [rank_correlation(values, column) for values in inputs.T]
+        pairs = zip(box.varied, zip(ranks, ranges, strict=True), strict=True)
+        drivers.append(dict(sorted(pairs, key=lambda pair: -pair[1][1])))
     return drivers
 
 
-def _warnings(box: _Box, drawn: Array) -> dict[str, float]:
+def _warnings(box: _Box, inputs: Array) -> dict[str, float]:
     """Return the fraction of the draws that have each STATUS bit."""
-    bits = box.results(drawn, ("STATUS",)).get("STATUS")
-    if bits is None:
-        return {}
-    fractions = {s.name or "": float(np.mean(bits.astype(int) & s != 0)) for s in Status}
+    results, _ = box.results(inputs, ("STATUS",))
+    bits = results.get("STATUS", np.zeros(1)).astype(int)
+    fractions = {s.name or "": float(np.mean(bits & s != 0)) for s in Status}
     return {name: fraction for name, fraction in fractions.items() if fraction}
 
 

@@ -60,14 +60,11 @@ class Sample:
     families: float
 
     def __post_init__(self) -> None:
-        with np.errstate(all="ignore"):
-            self._impacts = self.problem.impacts(self.names, self.points)
+        self._impacts = self.problem.impacts(self.names, self.points)
 
     def __getitem__(self, name: str) -> Array:
         """Return the values of a quantity."""
-        with np.errstate(all="ignore"):
-            values = self.problem.quantity(self._impacts, name)
-        return np.broadcast_to(values, len(self.points))
+        return np.broadcast_to(self._impacts[name], len(self.points))
 
     def bounds(self, names: Sequence[str], seed: int = 0) -> dict[str, tuple[float, float]]:
         """Return the least and the greatest values found within all limits."""
@@ -82,9 +79,7 @@ class Sample:
             impacts = self.problem.impacts(self.names, points)
             counts = np.isfinite(state.prior) & state.holds
             with np.errstate(all="ignore"):
-                columns = [
-                    self.problem.quantity(impacts, name) + 0.0 * points[:, 0] for name in names
-                ]
+                columns = [impacts[name] + 0.0 * points[:, 0] for name in names]
             return np.where(counts[:, None], np.stack(columns, 1), np.nan)
 
         values, _ = extremes(table, self.points, (low, high), rng)
@@ -168,7 +163,7 @@ class Target:
     def _log_likelihood(self, impacts: Impacts, count: int) -> tuple[Array, NDArray[np.bool_]]:
         likelihood, holds = np.zeros(count), np.ones(count, bool)
         for item in self.problem.observed:
-            part, within = observation(item, self.problem.misses(impacts, item))
+            part, within = observation(item, self.problem.misfit(impacts, item))
             likelihood, holds = likelihood + part, holds & within
         return np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300), holds
 

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .densities import draw
-from .impacts import AFTER, BEFORE, COURSES, Array
-from .problem import Known, Problem
+from .impacts import AFTER, BEFORE, COURSES, Array, Impacts
+from .problem import ANGLES, Known, Problem
 
 BATCH = 120  # starts at a time
 MAX_STARTS = 480
@@ -30,36 +31,59 @@ EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
 CANDIDATE_TOL = 1e-4  # misfit at which iterations end near an impact
 STEP = 1e-7  # of difference quotients; smaller slopes and excesses are rounding
+RESULT_STEP = 1e-6  # of those of results, in typical sizes; a smaller slope is rounding
 
 
 class Minimum(NamedTuple):
     """A minimum: the ``point`` over scaled coordinates, the sum of ``squares`` of what has
-    tolerances, and the largest misfit of exact values."""
+    tolerances, and the largest ``misfit`` of exact values."""
 
     point: Array
     squares: float
-    missed: float
+    misfit: float
 
 
 @dataclass
 class Fit:
-    """One impact that agrees with what is known, or comes nearest.
+    """One impact that agrees with what is known, or comes nearest, and the impacts around it.
 
-    ``sensitivity``: change of the coordinates by one standard deviation of each measured value;
-    ``measured``: those values; ``open_directions``: changes that no known value resists."""
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    names : list of str
+        Its coordinates.
+    sizes, point : ndarray
+        Their typical sizes and their values.
+    squares, misfit : float
+        Sum of squares of what has tolerances, and the largest misfit of exact values.
+    measured : list of Known
+        Values known with a tolerance.
+    open_directions : ndarray
+        Changes (columns) of the coordinates that no known value resists.
+    sensitivity : ndarray
+        Changes of the coordinates by one standard deviation of each measured value.
+    rank : int
+        Number of directions that measured values determine, along the limits.
+    leverage : ndarray
+        Leverage of each measured value on itself.
+    key, settled : ndarray
+        All velocities, and which of them known values determine.
+    """
 
     problem: Problem
     names: list[str]
+    sizes: Array
     point: Array
     squares: float
-    missed: float
+    misfit: float
+    measured: list[Known]
     open_directions: Array
     sensitivity: Array
-    measured: list[Known]
-    key: Array = field(default_factory=lambda: np.empty(0))
-    settled: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, bool))
-    rank: int = 0  # directions that measured values determine, along the limits
-    leverage: Array = field(default_factory=lambda: np.empty(0))  # of measured values on themselves
+    rank: int
+    leverage: Array
+    key: Array
+    settled: NDArray[np.bool_]
 
     @property
     def redundancy(self) -> int:
@@ -71,24 +95,57 @@ class Fit:
         """Probability of a sum of squares as large or larger (chi-square)."""
         return chi_square_tail(self.squares, self.redundancy) if self.redundancy else 1.0
 
-    def value(self, name: str) -> float:
-        """Return a quantity of the impact."""
-        impacts = self.problem.impacts(self.names, self.point[None])
-        with np.errstate(all="ignore"):
-            return float(np.ravel(self.problem.quantity(impacts, name))[0])
+    @cached_property
+    def impacts(self) -> Impacts:
+        """The impact."""
+        return self.problem.impacts(self.names, self.point[None])
 
-    def broken(self, friction: bool = False) -> dict[str, float]:
-        """Return the conditions of physics that the impact breaks, and by how much in typical
-        sizes."""
-        impacts = self.problem.impacts(self.names, self.point[None])
-        with np.errstate(all="ignore"):
-            rows = self.problem.margins(impacts, friction)
-        excess = dict.fromkeys(self.problem.forbidden, 1.0)
-        for name, margin in rows:
-            amount = -float(np.nan_to_num(np.ravel(margin)[0], nan=-1.0))
-            if amount > STEP:
-                excess[name] = max(amount, excess.get(name, 0.0))
-        return excess
+    @cached_property
+    def _nearby(self) -> tuple[Array, Impacts]:
+        """Lengths of open directions and sensitivities in typical sizes, and the impacts a small
+        step ahead along each, then a step back."""
+        shifts = np.concatenate([self.open_directions.T, self.sensitivity.T])
+        lengths = np.abs(shifts / self.sizes).max(1, initial=1e-300)
+        steps = RESULT_STEP * shifts / lengths[:, None]
+        points = self.point + np.concatenate([steps, -steps])
+        return lengths, self.problem.impacts(self.names, points)
+
+    def value(self, name: str) -> float:
+        """Return a result of the impact."""
+        return float(np.ravel(self.impacts[name])[0])
+
+    def margins(self, friction: bool = True) -> dict[str, float]:
+        """Return how far the impact lies within each condition of physics, in typical sizes."""
+        least: dict[str, float] = {}
+        for name, row in self.problem.margins(self.impacts, friction):
+            margin = float(np.nan_to_num(np.ravel(row)[0], nan=-1.0))
+            least[name] = min(margin, least.get(name, math.inf))
+        return least
+
+    def violations(self, friction: bool = False) -> dict[str, float]:
+        """Return the conditions of physics that the impact violates, with the amount."""
+        return {name: -margin for name, margin in self.margins(friction).items() if margin < -STEP}
+
+    def slopes(self, name: str) -> Array:
+        """Return changes of a result: along open directions, then by a standard deviation of each
+        measured value."""
+        lengths, impacts = self._nearby
+        column = np.broadcast_to(impacts[name], 2 * len(lengths))
+        with np.errstate(invalid="ignore"):
+            change = column[: len(lengths)] - column[len(lengths) :]
+        if name in ANGLES:
+            change = (change + 180.0) % 360.0 - 180.0
+        return np.asarray(change / (2 * RESULT_STEP) * lengths)
+
+    def open_slopes(self, name: str) -> Array:
+        """Return changes of a result along open directions, in typical sizes."""
+        count = self.open_directions.shape[1]
+        lengths, _ = self._nearby
+        return np.asarray(self.slopes(name)[:count] / lengths[:count] / self.problem.size(name))
+
+    def is_open(self, name: str) -> bool:
+        """Return True for a result that the known values leave open."""
+        return bool((np.abs(self.open_slopes(name)) > RESULT_STEP).any())
 
 
 class Search:
@@ -115,27 +172,26 @@ class Search:
     def residuals(self, points: Array) -> tuple[Array, Array]:
         """Return misfits in standard deviations, and those of exact values in sizes (columns)."""
         count = len(points)
-        with np.errstate(all="ignore"):
-            impacts = self.problem.impacts(self.names, points * self.sizes)
-            soft = [
-                (points[:, k] * self.sizes[k] - self.priors[k].amount.value) / self.priors[k].sd
-                for k in self.places
-            ]
-            soft += [self.problem.misses(impacts, item) / item.sd for item in self.soft]
-            hard = [self.problem.misses(impacts, item) / item.size for item in self.hard]
-            if self.limited:
-                hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
+        impacts = self.problem.impacts(self.names, points * self.sizes)
+        soft = [
+            (points[:, k] * self.sizes[k] - self.priors[k].amount.value) / self.priors[k].sd
+            for k in self.places
+        ]
+        soft += [self.problem.misfit(impacts, item) / item.sd for item in self.soft]
+        hard = [self.problem.misfit(impacts, item) / item.size for item in self.hard]
+        if self.limited:
+            hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
         return _columns(soft, count), _columns(hard, count)
 
     def slopes(self, point: Array) -> tuple[Array, Array]:
         """Return derivatives of both kinds of residuals at a point, by central differences."""
         ahead, behind = (
-            self._shifted(point[None], step * np.eye(len(point))) for step in (STEP, -STEP)
+            self._beside(point[None], step * np.eye(len(point))) for step in (STEP, -STEP)
         )
         soft, hard = ((a[0] - b[0]) / (2 * STEP) for a, b in zip(ahead, behind, strict=True))
         return soft, hard
 
-    def _shifted(self, points: Array, steps: Array) -> list[Array]:
+    def _beside(self, points: Array, steps: Array) -> list[Array]:
         """Return residuals of points moved by each step: point, residual, step."""
         count, d = points.shape
         tables = self.residuals((points[:, None] + steps).reshape(count * d, d))
@@ -157,14 +213,14 @@ class Search:
 
     def descend(self, points: Array) -> Array:
         """Return the ends of Levenberg-Marquardt iterations."""
-        mixed = self.measured and (self.hard or self.limited)
+        has_both = self.measured and (self.hard or self.limited)
         last = (STAGES[-1][0], sum(iterations for _, iterations in STAGES))
-        for tolerance, iterations in STAGES if mixed else (last,):
+        for tolerance, iterations in STAGES if has_both else (last,):
             damping = np.full(len(points), 1e-2)
-            residual = self._weighted(points, tolerance)
+            residual = self._all_residuals(points, tolerance)
             for _ in range(iterations):
                 step = self._damped_step(points, residual, tolerance, damping)
-                trial = self._weighted(points + step, tolerance)
+                trial = self._all_residuals(points + step, tolerance)
                 better = (trial**2).sum(1) < (residual**2).sum(1)
                 points = np.where(better[:, None], points + step, points)
                 residual = np.where(better[:, None], trial, residual)
@@ -178,7 +234,7 @@ class Search:
     ) -> Array:
         """Return a Levenberg-Marquardt step of each point, at most 2 typical sizes long."""
         d = points.shape[1]
-        soft, hard = self._shifted(points, STEP * np.eye(d))
+        soft, hard = self._beside(points, STEP * np.eye(d))
         slope = np.concatenate([soft, hard / tolerance], 1) - residual[:, :, None]
         slope /= STEP
         square = np.einsum("nij,nik->njk", slope, slope)
@@ -190,7 +246,7 @@ class Search:
         length = np.maximum(np.abs(step).max(1, keepdims=True), 1e-300)
         return np.asarray(step * np.minimum(1.0, 2.0 / length))
 
-    def _weighted(self, points: Array, tolerance: float) -> Array:
+    def _all_residuals(self, points: Array, tolerance: float) -> Array:
         soft, hard = self.residuals(points)
         return np.concatenate([soft, hard / tolerance], 1)
 
@@ -201,91 +257,86 @@ class Search:
         for _ in range(12):
             soft, hard = (table[0] for table in self.residuals(point[None]))
             by_soft, by_hard = self.slopes(point)
-            step = np.linalg.lstsq(by_hard, -hard, rcond=STEP)[0] if len(hard) else 0 * point
-            basis = null_space(by_hard) if len(hard) else np.eye(len(point))
-            if len(soft) and basis.size:
-                target = -(soft + by_soft @ step)
-                step = step + basis @ np.linalg.lstsq(by_soft @ basis, target, rcond=STEP)[0]
+            step = np.linalg.lstsq(by_hard, -hard, rcond=STEP)[0]
+            basis = null_space(by_hard)
+            target = -(soft + by_soft @ step)
+            step = step + basis @ np.linalg.lstsq(by_soft @ basis, target, rcond=STEP)[0]
             size = float(np.abs(step).max(initial=0.0))
             point = point + step * min(1.0, 1.0 / max(size, 1e-300))
             if size < 1e-12:
                 break
         ends = np.stack([start, point])
         soft, hard = self.residuals(ends)
-        missed = np.abs(hard).max(1, initial=0.0)
+        misfits = np.abs(hard).max(1, initial=0.0)
         # a step that crosses a limit again does not count
-        k = int(missed[1] <= missed[0] or missed[1] < EXACT_TOL)
-        return Minimum(ends[k], float((soft[k] ** 2).sum()), float(missed[k]))
+        k = int(misfits[1] <= misfits[0] or misfits[1] < EXACT_TOL)
+        return Minimum(ends[k], float((soft[k] ** 2).sum()), float(misfits[k]))
 
     def describe(self, minimum: Minimum) -> Fit:
         """Return a minimum with what it leaves open and what it depends on."""
         point = minimum.point
         by_soft, by_limits = self.slopes(point)
-        by_hard = by_limits[: len(self.hard)]
-        basis = null_space(by_hard) if len(by_hard) else np.eye(len(point))
+        basis = null_space(by_limits[: len(self.hard)])
         u, s, vt = np.linalg.svd(by_soft @ basis)
         rank = rank_of(s)
-        # a limit at which it lies checks known values, but makes none more certain
-        within = null_space(by_limits) if len(by_limits) else basis
-        directions, size, _ = np.linalg.svd(by_soft @ within)
-        free = rank_of(size)
+        open_directions = basis @ vt[rank:].T
         sensitivity = (basis @ vt[:rank].T / s[:rank]) @ u[:, :rank].T
-        fit = Fit(
+        # a limit at which it lies checks known values, but makes none more certain
+        directions, sizes, _ = np.linalg.svd(by_soft @ null_space(by_limits))
+        limited_rank = rank_of(sizes)
+        steps = 1e-5 * open_directions.T
+        velocities = self.invariants(point + np.concatenate([steps, -steps]))
+        changes = velocities[:, : len(steps)] - velocities[:, len(steps) :]
+        return Fit(
             problem=self.problem,
             names=self.names,
+            sizes=self.sizes,
             point=point * self.sizes,
             squares=minimum.squares,
-            missed=minimum.missed,
-            open_directions=(basis @ vt[rank:].T) * self.sizes[:, None],
-            sensitivity=sensitivity * self.sizes[:, None],
+            misfit=minimum.misfit,
             measured=self.measured,
+            open_directions=open_directions * self.sizes[:, None],
+            sensitivity=sensitivity * self.sizes[:, None],
+            rank=limited_rank,
+            leverage=np.square(directions[:, :limited_rank]).sum(1),
             key=self.invariants(point[None])[:, 0],
-            settled=np.ones(12, bool),
-            rank=free,
-            leverage=np.square(directions[:, :free]).sum(1),
+            settled=np.all(np.abs(changes) < 1e-9, axis=1),
         )
-        for direction in (fit.open_directions / self.sizes[:, None]).T:
-            both = self.invariants(point + 1e-5 * np.array([[1.0], [-1.0]]) * direction)
-            fit.settled &= np.abs(both[:, 0] - both[:, 1]) < 1e-9
-        return fit
 
     def run(self, seed: int = 0, first: Sequence[Array] = ()) -> tuple[list[Fit], int]:
-        """Return all minima found, the best first, and the number of starts that ended in one.
+        """Return all minima found, the best first, and the number of starts that led to one.
 
         ``first``: points to start from, in place of random ones only."""
+        if not self.names:
+            return [self.describe(self.polish(np.empty(0)))], 1
         rng = np.random.default_rng(seed)
         fits: list[Fit] = []
-        ended = 0
-        if not self.names:
-            point = np.empty(0)
-            soft, hard = self.residuals(point[None])
-            missed = float(np.abs(hard).max(initial=0.0))
-            return [self.describe(Minimum(point, float((soft**2).sum()), missed))], 1
+        ends = 0
         for _ in range(MAX_STARTS // BATCH):
             starts = self._near(first, rng) if first else self.starts(BATCH, rng)
-            ended += self._collect(self.descend(starts), fits)
-            count = sum(fit.missed < EXACT_TOL for fit in fits)
+            ends += self._collect(self.descend(starts), fits)
+            count = sum(fit.misfit < EXACT_TOL for fit in fits)
             is_full = len(fits) == MAX_IMPACTS
-            if first or is_full or not ended or expected_unseen(count, ended) < MAX_UNSEEN:
+            if first or is_full or not ends or expected_unseen(count, ends) < MAX_UNSEEN:
                 break
-        return sorted(fits, key=lambda fit: (fit.missed > EXACT_TOL, fit.squares)), ended
+        return sorted(fits, key=lambda fit: (fit.misfit > EXACT_TOL, fit.squares)), ends
 
     def _collect(self, ends: Array, fits: list[Fit]) -> int:
         """Add the minima at ends of iterations to ``fits``; return the number of those ends."""
         soft, hard = self.residuals(ends)
-        missed = np.abs(hard).max(1, initial=0.0)
-        for k in np.lexsort([(soft**2).sum(1), missed > CANDIDATE_TOL]):
-            if missed[k] > CANDIDATE_TOL and fits:
+        is_far = np.abs(hard).max(1, initial=0.0) >= CANDIDATE_TOL
+        for k in np.lexsort([(soft**2).sum(1), is_far]):
+            if is_far[k] and fits:
                 break
             if not self._is_seen(fits, ends[k], 1e-4) and len(fits) < MAX_IMPACTS:
                 fit = self.describe(self.polish(ends[k]))
                 if not self._is_seen(fits, fit.point / self.sizes, 1e-6):
                     fits.append(fit)
-        return int((missed < CANDIDATE_TOL).sum())
+        return int((~is_far).sum())
 
     def _near(self, first: Sequence[Array], rng: np.random.Generator) -> Array:
         """Return points, others around them, and random ones."""
-        points = np.stack(list(first)) / self.sizes
+        points = np.stack(first) / self.sizes
         around = np.repeat(points, 2, 0)
         return np.concatenate(
             [points, around + rng.normal(0, 0.1, around.shape), self.starts(40, rng)]
@@ -319,11 +370,11 @@ class Search:
         return np.stack([np.broadcast_to(x, len(points)) for x in velocities]) * scales
 
 
-def expected_unseen(minima: int, ended: int) -> float:
-    """Return the expected number of minima not yet seen, after ``ended`` starts led to some."""
-    if ended <= minima + 2:
+def expected_unseen(minima: int, starts: int) -> float:
+    """Return the expected number of minima not yet seen, after as many starts led to some."""
+    if starts <= minima + 2:
         return math.inf
-    return minima * (minima + 1) / (ended - minima - 2)
+    return minima * (minima + 1) / (starts - minima - 2)
 
 
 def null_space(matrix: Array) -> Array:

@@ -8,6 +8,7 @@ observations. What is neither known nor follows is a coordinate within an assume
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -21,7 +22,7 @@ from ..cases.motion import line_of_motion
 from ..errors import UserError
 from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE, NO_MOMENT
 from ..mechanics.laws import Scale, margins
-from ..mechanics.solve import evaluate
+from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
 from .densities import uniform
 from .impacts import (
@@ -46,6 +47,7 @@ RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 LOST = {"E": 0.0, "EM": 0.0, "MUP": PIVOT}  # coefficients that leave nothing of a velocity
 FINAL = ("SAF", "HAF", "VAX", "VAY")
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
+CRUSH = ("ELA", "EBSA", "ELB", "EBSB")
 MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
 TOUCH = 1e-9  # least speed, closing speed and impulse that count, over typical ones
 
@@ -73,20 +75,34 @@ class Problem:
         Known values by name, in one set of units.
     sign : int, default 0
         Sign of P_t where only the size of the friction is known (MU); 0 if it is not used.
+
+    Raises
+    ------
+    UserError
+        For missing masses and dimensions, and values that cannot be used.
     """
 
     def __init__(self, known: Mapping[str, Amount], sign: int = 0) -> None:
         self.remarks: list[str] = []
         self.assumed: dict[str, str] = {}
         self.excluded: dict[str, str] = {}  # result -> input that it needs
-        self.without_plane = self.without_arms = False
+        self.without_plane = self.without_arms = self.share = False
         self.original = dict(known)
         self.known = known = dict(known)
-        self.point = known.pop("M", Amount.exactly(6.0)).value == 4
+        kind = known.pop("M", Amount.exactly(BODIES)).value
+        if kind not in (POINT, BODIES):
+            raise UserError(f"M is {kind:g}; expected 6 for bodies or 4 for point masses")
+        self.point = kind == POINT
+        if absent := [name for name in ("MA", "MB") if name not in known]:
+            raise UserError(missing(absent))
         self._add_crush(known)
         self._set_barrier(known)
         self._set_at_rest(known)
-        self._complete(known)
+        if not self.point:
+            self._complete_bodies(known)
+        if self.point:
+            self._complete_points(known)
+        _check_coefficients(known)
         self.sign = self._set_friction(known, sign)
         self.given = {name for name in COEFFICIENTS if name in known}
         self._set_scales()
@@ -96,51 +112,43 @@ class Problem:
         self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
         self.coordinates: list[Known] = []
         self.fixed: dict[str, float] = {}
-        used = self._choose_coordinates()
+        names = self._choose_coordinates()
         self.observed = [
             Known(name, amount, self.size(name))
             for name, amount in known.items()
-            if name not in used
+            if name not in names
         ]
-        self.needed = (
-            *MARGIN_INPUTS,
-            *(item.name for item in self.observed if item.name != "SHARE"),
-        )
+        self.needed = (*MARGIN_INPUTS, *(item.name for item in self.observed))
 
     # -- what is known, completed
 
     def _add_crush(self, known: dict[str, Amount]) -> None:
-        """Replace the energies lost in each vehicle (ELA, ELB, or EBSA, EBSB) by their sum EL."""
-        parts = []
-        for vehicle in "AB":
-            crush, speed = known.pop("EL" + vehicle, None), known.pop("EBS" + vehicle, None)
-            if crush is None and speed is not None:
-                half = known["M" + vehicle].value / 2 if "M" + vehicle in known else np.nan
-                crush = Amount(
-                    half * speed.value**2,
-                    half * speed.low**2,
-                    half * speed.high**2,
-                    speed.kind,
-                    2 * half * speed.value * speed.sd,
-                )
-            parts.append(crush)
-        first, second = parts
-        if first is None and second is None:
+        """Replace the energies lost in each vehicle (ELA or EBSA, ELB or EBSB) by their sum EL."""
+        names = [name for name in CRUSH if name in known]
+        if not names:
             return
-        if first is None or second is None or "EL" in known:
-            raise UserError("ELA and ELB (or EBSA and EBSB) sum to EL; expected both, or EL")
-        kind = first.kind if first.varies else second.kind
+        if "EL" in known or [name[-1] for name in names] != ["A", "B"]:
+            raise UserError(
+                f"{', '.join(names)} given; expected ELA or EBSA together with ELB or EBSB, or EL "
+                "alone"
+            )
+        parts = []
+        for name in names:
+            part = known.pop(name)
+            parts.append(part if name[:2] == "EL" else _energy(part, known["M" + name[-1]].value))
+        a, b = parts
+        kind = a.kind if a.varies else b.kind
         known["EL"] = Amount(
-            first.value + second.value,
-            first.low + second.low,
-            first.high + second.high,
-            kind,
-            float(np.hypot(first.sd, second.sd)),
+            a.value + b.value,
+            a.low + b.low,
+            a.high + b.high,
+            "normal" if "normal" in (a.kind, b.kind) else kind,
+            math.hypot(a.standard_deviation, b.standard_deviation),
         )
 
     def _set_barrier(self, known: dict[str, Amount]) -> None:
         """Let a barrier, of infinite mass, rest unless its motion is given; it faces nothing."""
-        if "MB" in known and np.isinf(known["MB"].value):
+        if np.isinf(known["MB"].value):
             known.setdefault("IB", known["MB"])
             for name in ("SB", "WB", "TB", "DB", "PB"):
                 known.setdefault(name, Amount.exactly(0.0))
@@ -154,26 +162,6 @@ class Problem:
                 known.setdefault(x, Amount.exactly(0.0))
                 known.setdefault(y, Amount.exactly(0.0))
 
-    def _complete(self, known: dict[str, Amount]) -> None:
-        """Set what the problem does not need, and refuse what is missing."""
-        if missing_masses := [name for name in ("MA", "MB") if name not in known]:
-            raise UserError(missing(missing_masses))
-        if not self.point:
-            self._complete_bodies(known)
-        if self.point:
-            for name in ("WA", "WB", "WAF", "WBF", "EM"):
-                known.pop(name, None)
-            if "GA" not in known:
-                self._take_plane_across(known)
-            for name in (*ARMS, "WA", "WB", *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY"):
-                known.pop(name, None)
-            known |= dict.fromkeys(("IA", "IB"), Amount.exactly(1.0))
-            known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB"), Amount.exactly(0.0))
-            for vehicle in "AB":
-                if "T" + vehicle not in known:
-                    known["T" + vehicle] = Amount.exactly(np.nan)
-                    self.assumed["T" + vehicle] = f"{vehicle} faces the way it travels"
-
     def _complete_bodies(self, known: dict[str, Amount]) -> None:
         """Treat bodies of which only the momentum is used as points; refuse missing dimensions."""
         for vehicle, axes in OWN_AXES.items():
@@ -181,51 +169,63 @@ class Problem:
                 known.setdefault("D" + vehicle, Amount.exactly(0.0))
                 known.setdefault("P" + vehicle, Amount.exactly(0.0))
         absent = [name for name in VEHICLES if name not in known]
-        turning = [n for n in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS") if n in known]
         if not absent:
             self._turn_plane(known)
             return
-        if turning and set(absent) & {*ARMS, "GA"}:
-            names = ", ".join(turning)
-            raise UserError(
-                f"{names} {'needs' if len(turning) == 1 else 'need'} more: {missing(absent)}"
-            )
-        if set(absent) & set(ARMS):
+        turning = [n for n in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS") if n in known]
+        if turning and {*absent} & {*ARMS, "GA"}:
+            raise UserError(f"{', '.join(turning)} cannot be used: {missing(absent)}")
+        if arms := [name for name in absent if name in ARMS]:
             self.point = self.without_arms = True
-            reason = ", ".join(name for name in absent if name in ARMS)
+            reason = ", ".join(arms)
             for name in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS", "PM", "KI", "KF", "EL"):
                 self.excluded[name] = reason
+        elif "GA" in absent:
+            raise UserError(missing(["GA"]))
         for name in ("TA", "TB"):
             known.setdefault(name, Amount.exactly(np.nan))
-        if "GA" not in known and not self.point:
-            raise UserError(missing(["GA"]))
+
+    def _complete_points(self, known: dict[str, Amount]) -> None:
+        """Set the dimensions and spins that point masses do not have, and their contact plane."""
+        if "GA" not in known:
+            self._take_plane_across(known)
+        for name in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY", "WAF", "WBF", "EM"):
+            known.pop(name, None)
+        known |= dict.fromkeys(("IA", "IB"), Amount.exactly(1.0))
+        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB"), Amount.exactly(0.0))
+        for vehicle in "AB":
+            if "T" + vehicle not in known:
+                known["T" + vehicle] = Amount.exactly(np.nan)
+                self.assumed["T" + vehicle] = f"{vehicle} faces the way it travels"
 
     def _turn_plane(self, known: dict[str, Amount]) -> None:
         """Turn GA by 180 degrees where it puts each vehicle on the other's side."""
-        nominal = {name: known[name].value for name in VEHICLES}
-        if any(np.isnan(value) for value in nominal.values()) or known["GA"].varies:
+        names = (*VEHICLES, *OWN_AXES["A"], *OWN_AXES["B"])
+        values = {name: known[name].value for name in names if name in known}
+        if np.isnan([*values.values()]).any() or known["GA"].varies:
             return
-        own = {n: known[n].value for axes in OWN_AXES.values() for n in axes if n in known}
-        arms, _ = evaluate(placed({**nominal, **own}), ("at", "bt"))
+        arms, _ = evaluate(placed(values), ("at", "bt"))
         a, b = float(arms["at"]), float(arms["bt"])
         if min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0:
             angle = known["GA"].value
-            turned = angle - 180.0 if angle > 0 else angle + 180.0
-            known["GA"] = Amount.exactly(turned)
+            opposite = angle - 180.0 if angle > 0 else angle + 180.0
+            known["GA"] = Amount.exactly(opposite)
             self.remarks.append(
                 f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is "
-                f"on the side to which n points): taken as {turned:g}"
+                f"on the side to which n points): taken as {opposite:g}"
             )
 
     def _take_plane_across(self, known: dict[str, Amount]) -> None:
         """Choose the contact plane of point masses: across the motion where all of it is along one
         line, else across the impulse, whose direction is open (GA)."""
-        pointed = bool({*FORCES, "DVAR", "DVBR"} & known.keys())
-        locked = "MU" in known and known["MU"].value == PIVOT
-        if locked and not pointed and _is_zero(known.get("E", Amount.exactly(0.0))):
+        has_direction = bool({*FORCES, "DVAR", "DVBR"} & known.keys())
+        is_locked = "MU" in known and known["MU"].value == PIVOT
+        names: tuple[str, ...] = ("E", "MUP", "PN", "PT", "VC", "VS", "MUC")
+        if is_locked and not has_direction and _is_zero(known.get("E", Amount.exactly(0.0))):
             known["GA"] = Amount.exactly(0.0)  # equal velocities after: the plane has no effect
-            known.setdefault("E", Amount.exactly(0.0))
+            known["E"] = Amount.exactly(0.0)
             self.without_plane = True
+            names = names[1:]
         else:
             line, _ = line_of_motion(known)
             if line is not None:
@@ -235,25 +235,22 @@ class Problem:
                     "nothing acts along the plane"
                 )
                 known.pop("MU", None)
+                names = ()
             elif "MU" in known or "MUP" in known:
-                raise UserError(f"MU needs more: {missing(['GA'])}")
+                raise UserError(f"MU cannot be used: {missing(['GA'])}")
             known["MUP"] = Amount.exactly(0.0)
-        for name in ("E", "MUP", "PN", "PT", "VC", "VS", "MUC"):
-            if known.get("GA") is None or (self.without_plane and name != "E"):
-                self.excluded.setdefault(name, "GA")
+        for name in names:
+            self.excluded.setdefault(name, "GA")
 
     def _set_friction(self, known: dict[str, Amount], sign: int) -> int:
-        """Replace MU by the signed MUP, or by SHARE of the critical friction; return the sign."""
-        self.share = False
-        friction = known.pop("MU", None)
-        if friction is None:
-            return 0
-        if "MUP" in known:
+        """Replace MU by the signed MUP, unless it is a share of the critical friction; return the
+        sign."""
+        if "MU" in known and "MUP" in known:
             raise UserError("MU and MUP are both given; expected one of them")
-        if friction.share:
-            known["SHARE"] = friction
-            self.share = True
+        self.share = "MU" in known and known["MU"].share
+        if "MU" not in known or self.share:
             return 0
+        friction = known.pop("MU")
         if friction.value == PIVOT and not friction.varies:
             known["MUP"] = friction
             return 0
@@ -271,7 +268,7 @@ class Problem:
             known.pop("MU", None)  # the plane stays across the line of motion
             known |= {name: self.known[name] for name in ("GA", "MUP")}
         for name, amount in known.items():
-            is_motion = _rule(name) in MOTION or name in (*COURSES, *FORCES)
+            is_motion = quantity(name).unit in MOTION or name in (*COURSES, *FORCES)
             if is_motion and not amount.varies:
                 sd = tolerance * self.size(name)
                 known[name] = Amount(amount.value, -np.inf, np.inf, "normal", sd)
@@ -290,17 +287,16 @@ class Problem:
         finite = [ratio for ratio in ratios if np.isfinite(ratio)]
         self.gyration = 1.0 if self.point else float(np.sqrt(np.mean(finite)))
         moving = sum(mass for mass in masses if np.isfinite(mass))
-        sizes = [0.0]
+        sizes = []
         for name, amount in known.items():
-            largest, rule = abs(amount.value), _rule(name)
-            if rule == ENERGY:
-                sizes.append(float(np.sqrt(2.0 * largest / moving)))
-            elif rule == SPIN:
-                sizes.append(largest * self.gyration)
-            elif rule == VELOCITY:
-                sizes.append(largest)
-            elif rule == IMPULSE:
-                sizes.append(largest / self.mass)
+            value = abs(amount.value)
+            as_speed = {
+                VELOCITY: value,
+                SPIN: value * self.gyration,
+                IMPULSE: value / self.mass,
+                ENERGY: float(np.sqrt(2.0 * value / moving)),
+            }
+            sizes.append(as_speed.get(quantity(name).unit, 0.0))
         if not max(sizes):
             raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
         self.speed = max(sizes)
@@ -308,7 +304,7 @@ class Problem:
 
     def size(self, name: str) -> float:
         """Return what counts as large for a quantity."""
-        v, m, rule = self.speed, self.mass, _rule(name)
+        v, m, rule = self.speed, self.mass, quantity(name).unit
         sizes = {
             VELOCITY: v,
             SPIN: v / self.gyration,
@@ -367,7 +363,7 @@ class Problem:
                 self._assume(name)
                 amount = uniform(*self._widest(name))
             self.coordinates.append(Known(name, amount, self.size(name)))
-        self.forbidden = [n for n, x in self.fixed.items() if n in RANGES and not _is_allowed(n, x)]
+        self.ranges = [n for n in RANGES if n not in self.fixed and not self._has_no(n)]
         self._turns_with_course = [v for v in self.facing if not self.point]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
@@ -419,6 +415,8 @@ class Problem:
                 course = np.where(rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
                 impacts.values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
             impacts.compute(self.needed)
+            if self.share:
+                impacts.values["MU"] = impacts["MUP"] / impacts["MUC"]
         return impacts
 
     def _make_cartesian(self, values: dict[str, Any]) -> None:
@@ -440,17 +438,14 @@ class Problem:
                 total = total + np.log(np.abs(points[:, names.index(frame[0])]) + 1e-300)
         return total
 
-    def quantity(self, impacts: Impacts, name: str) -> Any:
-        """Return a quantity of impacts, among them SHARE, friction over the critical one."""
-        return impacts["MUP"] / impacts["MUC"] if name == "SHARE" else impacts[name]
-
-    def misses(self, impacts: Impacts, item: Known) -> Any:
+    def misfit(self, impacts: Impacts, item: Known) -> Any:
         """Return observed quantities less what was measured; angles within half a turn."""
-        off = self.quantity(impacts, item.name) - item.amount.value
+        off = impacts[item.name] - item.amount.value
         return (off + 180.0) % 360.0 - 180.0 if item.name in ANGLES else off
 
     # -- conditions
 
+    @np.errstate(all="ignore")
     def margins(self, impacts: Impacts, friction: bool = True) -> list[tuple[str, Any]]:
         """Return how far impacts lie within what physics allows, by condition, in typical sizes.
 
@@ -459,44 +454,55 @@ class Problem:
         if self.without_arms:
             return []
         inside = margins(impacts.values, self.scale)
-        energy = [("energy", inside["energy"][0] + ENERGY_TOLERANCE)]
+        rows = [("energy", inside["energy"][0] + ENERGY_TOLERANCE)]
         if self.without_plane:
-            return energy
+            return rows
         # the contact plane of points has no sides
         side = np.where(inside["approach"][0] < 0, -1.0, 1.0) if self.point else 1.0
-        rows = [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
-        if "E" not in self.fixed:
-            rows += [("E", row) for row in inside["E"]]
-        if "EM" not in self.fixed and not self.point:
-            rows += [("EM", row) for row in inside["EM"]]
+        rows += [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
+        rows += [(name, row) for name in self.ranges for row in inside[name]]
         if "MUP" not in self.given and friction:
             rows += [("friction", side * row) for row in inside["friction"]]
         if self.sign:
             rows.append(("sign of MU", -self.sign * impacts["gt"] / self.speed))
-        return energy + rows
+        return rows
 
 
 def placed(values: dict[str, Any]) -> dict[str, Any]:
     """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
     PB."""
-    for vehicle, axes in OWN_AXES.items():
+    for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
+        distance, angle, axes = "D" + vehicle, "P" + vehicle, OWN_AXES[vehicle]
         if any(name in values for name in axes):
-            forward, left = (values.get(name, 0.0) for name in axes)
-            values["D" + vehicle] = np.hypot(forward, left)
-            values["P" + vehicle] = np.degrees(np.arctan2(left, forward))
-    if "CX" in values or "CY" in values:
-        move = values.get("CX", 0.0), values.get("CY", 0.0)
-        for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
-            heading, arm = values["T" + vehicle], values["D" + vehicle]
-            x, y = components(arm, heading + values["P" + vehicle])
-            x, y = x + side * move[0], y + side * move[1]
-            values["D" + vehicle] = np.hypot(x, y)
-            values["P" + vehicle] = np.degrees(np.arctan2(y, x)) - heading
+            forward, leftward = (values.get(name, 0.0) for name in axes)
+            values[distance], values[angle] = _polar(forward, leftward)
+        if "CX" in values or "CY" in values:
+            heading = values["T" + vehicle]
+            x, y = components(values[distance], heading + values[angle])
+            x, y = x + side * values.get("CX", 0.0), y + side * values.get("CY", 0.0)
+            values[distance], direction = _polar(x, y)
+            values[angle] = direction - heading
     return values
 
 
-def _rule(name: str) -> str:
-    return "1" if name == "SHARE" else str(quantity(name).unit)
+def _polar(x: Any, y: Any) -> tuple[Any, Any]:
+    """Return size and direction in degrees of a vector."""
+    return np.hypot(x, y), np.degrees(np.arctan2(y, x))
+
+
+def _energy(speed: Amount, mass: float) -> Amount:
+    """Return the kinetic energy at a speed."""
+    low, value, high = (mass / 2 * (x * abs(x)) for x in (speed.low, speed.value, speed.high))
+    return Amount(value, low, high, speed.kind, mass * speed.value * speed.sd)
+
+
+def _check_coefficients(known: Mapping[str, Amount]) -> None:
+    """Raise UserError for E and EM outside of their ranges."""
+    for name, (low, high) in RANGES.items():
+        amount = known.get(name, Amount.exactly(low))
+        if (amount.high < low or amount.low > high) and amount.value != NO_MOMENT:
+            no_moment = f", or {NO_MOMENT:g} for no moment" if name == "EM" else ""
+            raise UserError(f"{name} is {amount.value:g}; expected {low:g} to {high:g}{no_moment}")
 
 
 def _is_zero(amount: Amount | None) -> bool:
@@ -511,11 +517,6 @@ def unwrapped(name: str, column: Array, middle: float | None) -> Array:
         sines = np.exp(1j * np.radians(column)).mean()
         middle = float(np.degrees(np.angle(sines)))
     return np.asarray(middle + (column - middle + 180.0) % 360.0 - 180.0)
-
-
-def _is_allowed(name: str, value: float) -> bool:
-    low, high = RANGES[name]
-    return low <= value <= high or value == NO_MOMENT
 
 
 def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ equations tells what they determine (Golub and Van Loan, *Matrix Computations*, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError
-from ..mechanics.solve import evaluate
+from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import check_names, missing
 from .impacts import AFTER, BEFORE, COEFFICIENTS, IMPULSES, PIVOT, VEHICLES, Array, Impacts
 
@@ -43,8 +43,8 @@ class Solution:
     Examples
     --------
     >>> known = {"M": 4, "MA": 3, "MB": 2, "GA": 0, "UX": -3, "UY": 0, "VY": 0, "VAX": 1, "VBX": 2}
-    >>> (found,) = impact88.solve_for(known)
-    >>> print(found["VX"].round(2), found.mismatch.round(2))
+    >>> (solution,) = impact88.solve_for(known)
+    >>> print(solution["VX"].round(2), solution.mismatch.round(2))
     8.0 0.0
     """
 
@@ -94,98 +94,90 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     """
     check_names(known, (*VEHICLES, *UNKNOWNS, "MU", "M"), "quantity")
     values, _ = evaluate(known, tuple(known))  # as numbers of one shape
-    if np.all(values.pop("M", 6.0) == 4):
+    if np.all(values.pop("M", BODIES) == POINT):
         values |= {name: np.zeros(()) for name in ("DA", "DB", "PA", "PB", "WA", "WB", "PM")}
         values |= {name: np.ones(()) for name in ("IA", "IB")}
         values = {"TA": np.zeros(()), "TB": np.zeros(()), **values}
     if lacking := [name for name in VEHICLES if name not in values]:
         raise UserError(missing(lacking))
+    names = [n for n in UNKNOWNS if n not in values] if unknown is None else list(unknown)
+    check_names(names, UNKNOWNS, "unknown")
     shape = np.broadcast_shapes(*(x.shape for x in values.values()))
     values = {name: np.broadcast_to(x, shape).ravel() for name, x in values.items()}
-    wanted = [n for n in UNKNOWNS if n not in values] if unknown is None else list(unknown)
-    check_names(wanted, UNKNOWNS, "unknown")
-    solutions = []
-    for reading in _readings(values):
-        found, mismatch, sliding = _solve(reading, wanted)
-        agrees = np.isfinite(mismatch)
-        if "MU" in values:
-            opposes = reading["MUP"] * sliding <= 0
-            ends = (np.abs(sliding) <= RANK_TOL) | (reading["MUP"] == PIVOT)
-            agrees &= ends | opposes
-        reshaped = {name: x.reshape(shape) for name, x in found.items()}
-        solutions.append(Solution(reshaped, mismatch.reshape(shape), agrees.reshape(shape)))
-    agreeing = [solution for solution in solutions if solution.agrees.any()]
-    if not agreeing or all(np.isnan(x).all() for x in agreeing[0].values.values()):
-        raise UserError(f"{', '.join(wanted)} do not follow from what is known")
-    return agreeing
+    solutions = [_solve(reading, names, shape) for reading in _readings(values)]
+    solutions = [solution for solution in solutions if solution.agrees.any()]
+    if not solutions or all(np.isnan(x).all() for x in solutions[0].values.values()):
+        raise UserError(f"{', '.join(names)} do not follow from what is known")
+    return solutions
 
 
-def _readings(values: Mapping[str, Array]) -> list[dict[str, Array]]:
+def _readings(values: dict[str, Array]) -> list[dict[str, Array]]:
     """Return the values with each sign of MU as MUP."""
-    rest = {name: x for name, x in values.items() if name != "MU"}
     if "MU" not in values:
-        return [rest]
+        return [values]
     mu = values["MU"]
-    if np.all((mu == 0) | (mu == PIVOT)):
-        return [{**rest, "MUP": mu}]
-    return [{**rest, "MUP": np.where(mu == PIVOT, mu, sign * mu)} for sign in (1.0, -1.0)]
+    signs = (1.0,) if np.all((mu == 0) | (mu == PIVOT)) else (1.0, -1.0)
+    return [{**values, "MUP": np.where(mu == PIVOT, mu, sign * mu)} for sign in signs]
 
 
-def _solve(v: Mapping[str, Array], wanted: list[str]) -> tuple[dict[str, Array], Array, Array]:
-    """Return the wanted quantities, the mismatch and the sliding, of elements."""
+def _solve(v: Mapping[str, Array], names: Sequence[str], shape: tuple[int, ...]) -> Solution:
+    """Return the unknowns of elements, in their shape."""
     count = len(v["MA"])
     bodies = {name: v[name] for name in VEHICLES}
-    zero, one = np.zeros(count), np.ones(count)
-    basis = [Impacts({**bodies, **dict.fromkeys(STATE, zero), name: one}) for name in STATE]
     largest = [np.abs(v[name]).max(initial=0.0) for name in (*BEFORE, *AFTER) if name in v]
     speed = float(max(largest, default=0.0)) or 1.0
     mass = 1.0 / (1.0 / v["MA"] + 1.0 / v["MB"])
-    sizes = np.stack([one] * 6 + [mass] * 3, 1) * speed
-    rows = _Rows(basis, mass)
-    used = [name for name in (*BEFORE, *AFTER, *COEFFICIENTS, "PM") if name in v]
-    matrix = np.stack([rows.row(name, v[name]) for name in used], 1) * sizes[:, None]
-    right = np.stack([v[name] if name in (*BEFORE, *AFTER) else zero for name in used], 1)
-    scale = np.abs(matrix).max(2, keepdims=True) + 1e-300
-    u, s, vt = np.linalg.svd(matrix / scale)
+    sizes = np.stack([np.ones(count)] * 6 + [mass] * 3, 1) * speed
+    columns = _columns(bodies, count)
+    given = [name for name in (*BEFORE, *AFTER, *COEFFICIENTS, "PM") if name in v]
+    matrix = np.stack([_row(name, v[name], columns, mass) for name in given], 1) * sizes[:, None]
+    right = np.stack([v[n] * (n in BEFORE or n in AFTER) for n in given], 1)
+    scale = np.abs(matrix).max(2) + 1e-300
+    matrix, right = matrix / scale[..., None], right / scale
+    u, s, vt = np.linalg.svd(matrix)
+    rank = s.shape[1]
     keep = s > RANK_TOL * s[:, :1]
-    inverse = np.where(keep, 1.0 / np.where(keep, s, 1.0), 0.0)
-    parts = np.einsum("nij,ni->nj", u[:, :, : s.shape[1]], right / scale[..., 0]) * inverse
-    state = np.einsum("njk,nj->nk", vt[:, : s.shape[1]], parts)
-    misses = np.einsum("nij,nj->ni", matrix / scale, state) - right / scale[..., 0]
-    is_open = np.concatenate([~keep, np.ones((count, 9 - s.shape[1]), bool)], 1)
+    parts = np.einsum("nij,ni->nj", u[:, :, :rank], right) / np.where(keep, s, np.inf)
+    state = np.einsum("njk,nj->nk", vt[:, :rank], parts)
+    mismatch = np.abs(np.einsum("nij,nj->ni", matrix, state) - right).max(1) * speed
+    is_open = np.pad(~keep, ((0, 0), (0, len(STATE) - rank)), constant_values=True)
     directions = np.where(is_open[..., None], vt, 0.0)
     impacts = Impacts({**bodies, **dict(zip(STATE, (state * sizes).T, strict=True))})
-    found = {}
-    for name in wanted:
-        gradient = rows.row(name, np.broadcast_to(impacts[name], count)) * sizes
-        loose = np.abs(np.einsum("njk,nk->nj", directions, gradient)).max(1)
-        determined = loose <= DETERMINED_TOL * np.abs(gradient).max(1)
-        found[name] = np.where(determined, impacts[name], np.nan)
-    return found, np.abs(misses).max(1) * speed, np.broadcast_to(impacts["gt"] / speed, count)
+    unknowns = {}
+    for name in names:
+        value = np.broadcast_to(impacts[name], count)
+        slopes = _row(name, value, columns, mass) * sizes
+        change = np.abs(np.einsum("njk,nk->nj", directions, slopes)).max(1)
+        is_determined = change <= DETERMINED_TOL * np.abs(slopes).max(1)
+        unknowns[name] = np.where(is_determined, value, np.nan).reshape(shape)
+    agrees = np.isfinite(mismatch)
+    if "MU" in v:
+        sliding = impacts["gt"] / speed
+        is_end = (np.abs(sliding) <= RANK_TOL) | (v["MUP"] == PIVOT)
+        agrees &= is_end | (v["MUP"] * sliding <= 0)
+    return Solution(unknowns, mismatch.reshape(shape), agrees.reshape(shape))
 
 
-class _Rows:
-    """Velocities and laws as rows over the state, from the impacts of its unit vectors."""
+def _columns(bodies: Mapping[str, Array], count: int) -> dict[str, Array]:
+    """Return velocities, impulses and relative velocities of impacts of which one component of the
+    state is 1 and the others are 0: element, component."""
+    zeros = dict.fromkeys(STATE, np.zeros(count))
+    impacts = [Impacts({**bodies, **zeros, name: np.ones(count)}) for name in STATE]
+    state = {name: np.stack([np.broadcast_to(i[name], count) for i in impacts]) for name in MOTION}
+    relative, _ = evaluate({**bodies, "M": BODIES, "MU": 0.0, **state}, CONTACT)
+    return {name: x.T for name, x in (*state.items(), *relative.items())}
 
-    def __init__(self, basis: list[Impacts], mass: Array) -> None:
-        self.mass = mass
-        count = len(mass)
-        state = {
-            name: np.stack([np.broadcast_to(b[name], count) for b in basis]) for name in MOTION
-        }
-        bodies = {name: basis[0].values[name] for name in (*VEHICLES, "M")}
-        relative, _ = evaluate({**bodies, **state, "MU": 0.0}, CONTACT)
-        self.columns = {name: x.T for name, x in (*state.items(), *relative.items())}
 
-    def row(self, name: str, value: Array) -> Array:
-        """Return a velocity, or Equation 15, 16 or 18 with the value of its coefficient."""
-        if name not in COEFFICIENTS:
-            return self.columns[name]
-        columns, x = self.columns, value[:, None]
-        if name == "E":
-            return np.asarray(columns["VS"] + x * columns["gn"])
-        if name == "MUP":
-            sliding = columns["gt_after"] * self.mass[:, None]
-            return np.where(x == PIVOT, sliding, columns["PT"] - x * columns["PN"])
+def _row(name: str, value: Array, columns: Mapping[str, Array], mass: Array) -> Array:
+    """Return a velocity, or Equation 15, 16 or 18 with the value of its coefficient, as a row over
+    the state."""
+    x = value[:, None]
+    if name == "E":
+        return np.asarray(columns["VS"] + x * columns["gn"])
+    if name == "MUP":
+        sliding = columns["gt_after"] * mass[:, None]
+        return np.where(x == PIVOT, sliding, columns["PT"] - x * columns["PN"])
+    if name == "EM":
         push = columns["PM"] * (columns["ia"] + columns["ib"])
         return np.asarray((1.0 - x) * (columns["WAF"] - columns["WBF"]) - x * push)
+    return columns[name]

@@ -1,21 +1,23 @@
 """Reconstructions in words: the sentences that terminal, report and web page print.
 
-What was asked, whether the evidence agrees, why no impact does, what was assumed, what would help,
-and what was made of the problem.
+They say what is asked, whether the evidence agrees, why no impact does, what was assumed and what
+would help.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Sequence
 
 from ..cases.units import PLAIN, View
 from ..mechanics.laws import BROKEN
 from ..names import quantity
-from .answer import CONTRADICTION, MAX_NAMED, OUTSIDE, Reconstruction, Test
+from .answer import CONTRADICTION, MAX_NAMED, OUTSIDE, Reconstruction
 from .impacts import SPEEDS
+from .laws import MissedLaw
+from .problem import CRUSH
 
 POOR = 0.05  # probability below which values agree poorly
+LARGEST = 0.5  # share of a variance from which a value is named as what would help
 ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
 """Results that advice names."""
 CONDITIONS = {
@@ -27,6 +29,8 @@ CONDITIONS = {
     "friction": "MUP",
 }
 """Conditions of physics, each with the result that shows by how much it is broken."""
+SOURCES = {"EL": CRUSH, "MUP": ("MU",)}
+"""Measured values with the entries that they may come from."""
 VERDICTS = {
     "agrees": "",
     "at a limit": "the values fit best beyond a limit of physics; this impact lies at it",
@@ -44,19 +48,45 @@ def number(name: str, value: float, view: View = PLAIN, digits: int = 4) -> str:
     return f"{text} {view.unit(name)}".rstrip()
 
 
+def entry(result: Reconstruction, name: str) -> str:
+    """Return the name of a measured value with the entries that give it.
+
+    Parameters
+    ----------
+    result : Reconstruction
+        The impact.
+    name : str
+        A name in its ``tests`` or ``drivers``: EL may be the sum of two entries' energies, MUP a
+        signed MU, and MU a share of the critical friction.
+
+    Examples
+    --------
+    >>> known = {"M": 4, "MA": 95, "MB": 110, "HA": 0, "SB": 0, "E": 0.1, "HAF": 0}
+    >>> known |= {"EBSA": "14 +- 2", "EBSB": "12 +- 2"}
+    >>> entry(impact88.reconstruct(known, samples=0)[0], "EL")
+    'EL (EBSA, EBSB)'
+    """
+    if name == "MU" and result.known[name].share:
+        return "MU/MUC"
+    return name if name in result.known else f"{name} ({', '.join(_entries(result, name))})"
+
+
+def _entries(result: Reconstruction, name: str) -> list[str]:
+    """Return the entries that give a measured value."""
+    return [part for part in (name, *SOURCES.get(name, ())) if part in result.known]
+
+
 def question(result: Reconstruction) -> str:
-    """Return what was asked, from how many values."""
+    """Return what is asked, from how many values."""
     known = result.known
-    measured = [name for name in known if known[name].varies]
-    exact = len(known) - len(measured)
+    within_limits = [name for name in known if known[name].varies]
+    exact = len(known) - len(within_limits)
     asked = [name for name in ("SA", "SB") if _is_asked(result, name)]
     asked += [n for n in ("E", "MUP", "EM") if n in result.assumed and n not in known]
-    parts = []
-    if measured:
-        parts.append(f"{_join(measured)} within limits")
+    parts = [f"{_join(within_limits)} within limits"] if within_limits else []
     parts.append(f"{exact} exact value{'s' * (exact != 1)}")
     open_question = "whether they agree" if result.evidence.redundancy else "the impact"
-    return f"{_join(asked) if asked else open_question}, from {' and '.join(parts)}"
+    return f"{_join(asked) or open_question}, from {_join(parts)}"
 
 
 def _is_asked(result: Reconstruction, speed: str) -> bool:
@@ -66,27 +96,28 @@ def _is_asked(result: Reconstruction, speed: str) -> bool:
 
 def evidence(result: Reconstruction, view: View = PLAIN) -> str:
     """Return whether the known values agree with each other."""
-    found = result.evidence
+    agreement = result.evidence
     laws = "; ".join(_law(law, view) for law in result.laws[:MAX_NAMED])
-    if not found.redundancy:
+    if not agreement.redundancy:
         text = "not checked: no more is known than needed"
         return f"{text}; {laws}" if laws else text
-    agree = "agree" if found.probability >= POOR else "agree poorly"
-    if found.probability < CONTRADICTION:
+    agree = "agree" if agreement.probability >= POOR else "agree poorly"
+    if agreement.probability < CONTRADICTION:
         agree = "contradict one another"
-    text = (
-        f"the values {agree}: sum of squared adjustments {found.squares:.3g} where about "
-        f"{found.redundancy} is expected, probability {found.probability:.2g}"
-    )
-    odd = "; ".join(check(result, name, view) for name in found.at_odds)
-    if odd and found.probability < POOR:
-        text += f". Most at odds: {odd}"
-    return f"{text}. {laws[:1].upper()}{laws[1:]}" if laws else text
+    sentences = [
+        f"the values {agree}: sum of squared adjustments {agreement.squares:.3g} where about "
+        f"{agreement.redundancy} is expected, probability {agreement.probability:.2g}"
+    ]
+    if agreement.at_odds and agreement.probability < POOR:
+        checks = "; ".join(check(result, name, view) for name in agreement.at_odds)
+        sentences.append(f"Most at odds: {checks}")
+    if laws:
+        sentences.append(laws[:1].upper() + laws[1:])
+    return ". ".join(sentences)
 
 
-def _law(law: Any, view: View) -> str:
-    amount = number(law.like, law.amount, view)
-    amount = amount.lstrip("-")
+def _law(law: MissedLaw, view: View) -> str:
+    amount = number(law.like, law.amount, view).lstrip("-")
     return f"{law.law} misses by {amount} ({100 * law.relative:.2g} % of its largest term)"
 
 
@@ -94,13 +125,14 @@ def check(result: Reconstruction, name: str, view: View = PLAIN) -> str:
     """Return a known value beside the others."""
     test = result.tests[name]
     given, others = (number(name, x, view) for x in (test.measured, test.by_others))
-    return f"{name} {given} given, {others} by the others{_moved(result, name, test.by_others)}"
+    distance = _distance(result, name, test.by_others)
+    return f"{entry(result, name)} {given} given, {others} by the others{distance}"
 
 
-def _moved(result: Reconstruction, name: str, value: float) -> str:
+def _distance(result: Reconstruction, name: str, value: float) -> str:
     """Return how far a value is from the given one in its standard deviations, "" if exact."""
     test = result.tests[name]
-    if name not in result.known or not result.known[name].varies:
+    if not any(result.known[part].varies for part in _entries(result, name)):
         return ""
     return f" ({abs(value - test.measured) / test.sd:.1f} sd)"
 
@@ -109,42 +141,39 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     """Return why no impact agrees, and which values would have to move how far; "" if one does."""
     text = VERDICTS[result.verdict]
     conditions = []
-    for name in result.broken:
-        amount = result.values.get(CONDITIONS.get(name, ""), None)
-        words = BROKEN.get(name, f"{name} would be the other one")
-        if amount is not None and result.verdict == "impossible":
-            words += f" ({CONDITIONS[name]} {number(CONDITIONS[name], amount, view)})"
+    for condition in result.broken:
+        words = BROKEN.get(condition, "friction would act along the sliding")
+        name = CONDITIONS.get(condition, "")
+        if name in result.values and result.verdict == "impossible":
+            words += f" ({name} {number(name, result.values[name], view)})"
         conditions.append(words)
     if conditions:
         text += f": {'; '.join(conditions)}"
-    moves = [
-        f"{name} at {number(name, test.adjusted, view)}, not {number(name, test.measured, view)}"
-        f"{_moved(result, name, test.adjusted)}"
-        for name, test in _farthest(result.tests)
-    ]
-    if result.verdict == "contradictory" and moves:
-        text += f". The nearest one has {'; '.join(moves)}"
+    moves = {n: abs(t.adjusted - t.measured) / t.sd for n, t in result.tests.items()}
+    farthest = sorted((name for name in moves if moves[name] >= 1.0), key=lambda n: -moves[n])
+    if result.verdict == "contradictory" and farthest:
+        text += ". The nearest one has "
+        text += "; ".join(_move(result, name, view) for name in farthest[:MAX_NAMED])
     return text
+
+
+def _move(result: Reconstruction, name: str, view: View) -> str:
+    test = result.tests[name]
+    adjusted, measured = (number(name, x, view) for x in (test.adjusted, test.measured))
+    distance = _distance(result, name, test.adjusted)
+    return f"{entry(result, name)} at {adjusted}, not {measured}{distance}"
 
 
 def warnings(result: Reconstruction, view: View = PLAIN) -> list[str]:
     """Return reasons to doubt the answer: why no impact agrees, that none is within all limits."""
-    reason = refusal(result, view)
-    return [*([reason] if reason else []), *(text for text in result.remarks if text == OUTSIDE)]
-
-
-def _farthest(tests: Any) -> list[tuple[str, Test]]:
-    """Return the values that an impact has farthest from where they were measured."""
-    moved = [(n, t) for n, t in tests.items() if abs(t.adjusted - t.measured) >= t.sd]
-    return sorted(moved, key=lambda pair: -abs(pair[1].adjusted - pair[1].measured) / pair[1].sd)[
-        :MAX_NAMED
-    ]
+    reasons = [refusal(result, view), OUTSIDE if OUTSIDE in result.remarks else ""]
+    return [reason for reason in reasons if reason]
 
 
 def assumptions(result: Reconstruction) -> tuple[str, ...]:
     """Return what was assumed of inputs that are not given, a phrase each."""
     return tuple(
-        f"{text}" if name[0] == "T" else f"{name} {text}" for name, text in result.assumed.items()
+        text if name[0] == "T" else f"{name} {text}" for name, text in result.assumed.items()
     )
 
 
@@ -152,29 +181,26 @@ def advice(result: Reconstruction) -> tuple[str, ...]:
     """Return what would help, a sentence each."""
     sentences = []
     if result.advice:
-        opened = [name for name in result.undetermined if name in ADVISED]
-        names = _join(result.advice)
-        sentences.append(
-            f"give {names}: that would determine {_join(opened or result.undetermined)}"
-        )
+        names = [name for name in result.undetermined if name in ADVISED] or result.undetermined
+        sentences.append(f"give {_join(result.advice)}: that would determine {_join(names)}")
     for name in ("SA", "SB"):
-        driver = next(iter(result.drivers.get(name, {}).items()), None)
-        if driver and driver[1] >= 0.5 and driver[0] != name:
-            sentences.append(
-                f"know {driver[0]} more closely: it makes {100 * driver[1]:.0f} % of the variance "
-                f"of {name}"
-            )
+        for driver, share in result.drivers.get(name, {}).items():
+            if share >= LARGEST and driver != name:
+                sentences.append(
+                    f"know {entry(result, driver)} more closely: it makes {100 * share:.0f} % of "
+                    f"the variance of {name}"
+                )
     return tuple(sentences)
 
 
 def remarks(result: Reconstruction) -> tuple[str, ...]:
-    """Return what was made of the problem, and how it was searched."""
-    ended, impacts, unseen = result.search
+    """Return how the known values were understood, and how the impact was searched."""
+    starts, impacts, unseen = result.search
     lines = [text for text in result.remarks if text != OUTSIDE]
-    if impacts and ended > 1:
+    if impacts and starts > 1:
         lines.append(
-            f"{ended} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected number "
-            f"not seen {unseen:.2g}"
+            f"{starts} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected "
+            f"number not seen {unseen:.2g}"
         )
     needs: dict[str, list[str]] = {}
     for name, reason in result.excluded.items():
@@ -186,7 +212,6 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def _join(names: Iterable[str]) -> str:
+def _join(names: Sequence[str]) -> str:
     """Return names as in "A, B and C"."""
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else str(last)
+    return " and ".join([", ".join(names[:-1])] * (len(names) > 1) + [*names[-1:]])
