@@ -11,7 +11,7 @@ import pytest
 from impact88.errors import UserError
 from impact88.files import packaged_text
 from impact88.names import SCENE
-from impact88.program.copies import ListingCopy, run_emulated
+from impact88.program.copies import ListingCopy
 from impact88.program.replay import replay
 from impact88.program.run import run
 from impact88.program.scene import sample
@@ -74,7 +74,6 @@ COMPILED = {
     "sign": LISTING.replace("2 * EM - 1", "2 * EM + 1"),
     "number after IF": changed((510, "IF MU > - 10 THEN MU = .5: GOTO 530")),
     "texts": changed((720, 'Q$ = "***" + "**": PRINT : PRINT Q$;R$')),
-    "renamed": renamed({"UX": "V1", "MA": "M1", "EM": "R", "PA": "P1"}),
     "converted": changed((210, "INPUT S1,S2,WA:UX = S1 * 1.46667:UY = S2 * 1.46667")),
     "weights": changed((310, "INPUT W1,W2:MA = W1 / 32.2:MB = W2 / 32.2:IA = 3728:IB = 1961")),
     "RETURN within a loop": changed((1150, "A(I,OL) = A(I,OL) / AP: IF OL > M THEN RETURN"))
@@ -103,7 +102,6 @@ def copy_of(text: str, folder: Path) -> ListingCopy:
 @pytest.mark.parametrize("name", [*COMPILED, *EMULATED])
 def test_pages_are_those_of_the_emulator(name, tmp_path):
     copy = copy_of({**COMPILED, **EMULATED}[name], tmp_path)
-    copy.check_variables()
     assert (copy.steps is not None) == (name in COMPILED)
     count = len(SCENES) if name in COMPILED else 2
     columns = {name: column[:count] for name, column in COLUMNS.items()}
@@ -111,14 +109,13 @@ def test_pages_are_those_of_the_emulator(name, tmp_path):
 
 
 def test_a_scene_replaces_the_copys_numbers(tmp_path):
-    for name in ("data", "READ", "INPUT", "renamed"):
+    for name in ("data", "READ", "INPUT"):
         page = copy_of(COMPILED[name], tmp_path).run(sample(1)).page
         assert page.endswith(run(sample(1)).page[-400:])
 
 
 def test_the_listing_itself_prints_what_replay_does(tmp_path):
     copy = copy_of(LISTING, tmp_path)
-    assert copy.changed_lines() == []
     assert copy.pages(COLUMNS) == replay(COLUMNS, pages=True).pages
 
 
@@ -127,45 +124,31 @@ def test_small_letters_are_typed_as_capitals(tmp_path):
     page = run(scene).page
     assert "IA= 3700" in page
     assert copy_of(LISTING, tmp_path).run(scene).page == page
-    assert run_emulated(scene).page == page
-
-
-def test_changed_lines(tmp_path):
-    text = changed((490, "A(6,5) = 2 * EM + 1"), (100, "REM OURS")) + "785 REM MORE\n"
-    (change, *others) = copy_of(text.replace("1170 RETURN\n", ""), tmp_path).changed_lines()
-    assert (change.line, change.copy) == (490, "A(6,5) = 2 * EM + 1")
-    assert change.restored.startswith("A(6,5) = 2 * EM - 1:")
-    assert [(other.line, other.copy) for other in others] == [(1170, "")]
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "holds no program"),
+        ("", "gives no number to E, MU, EM"),
         ("no numbers here", "is not an Applesoft program"),
-        ("10 INPUT A$: GOTO 10", "asks for more than a scene holds"),
-        ("10 GOTO 10", "does not end within 100,000 statements"),
+        (renamed({"UX": "V1", "M": "QQ"}), "gives no number to UX, M; expected"),
+        (added(190, 'INPUT "SLOT ";S'), r"asks for S \(INPUT or READ\)"),
+        (changed((320, "READ KI: DATA 5")), "asks for KI"),
+        (changed((310, "MA = W1 / W2:MB = 1:IA = 1:IB = 1:W1 = 2:W2 = 3")), "no number to MA"),
     ],
 )
 def test_what_is_no_copy_is_refused(text, message, tmp_path):
     with pytest.raises(UserError, match=f"office.bas: .*{message}"):
-        copy_of(text, tmp_path).run({})
+        copy_of(text, tmp_path)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (added(190, 'INPUT "SLOT ";S'), r"asks for S \(INPUT\)"),
-        (LISTING.replace("MA = 143.5:", "").replace('"MA= "', '"MASS "'), "MA: no variable"),
+        (added(780, "GOTO 780").replace(": END", ""), "does not end within 100,000 statements"),
+        (changed((780, "GOTO 210")), "asks for more than a scene holds"),
     ],
 )
-def test_variables_that_a_scene_does_not_give_are_named(text, message, tmp_path):
-    with pytest.raises(UserError, match=message):
-        copy_of(text, tmp_path).check_variables()
-
-
-def test_a_copy_without_m_runs_bodies_only(tmp_path):
-    copy = copy_of(renamed({"M": "QQ"}), tmp_path)
-    assert copy.run(sample(1)).page == run(sample(1)).page
-    with pytest.raises(UserError, match="no variable of the copy holds M"):
-        copy.run(sample(2))
+def test_a_copy_that_does_not_end(text, message, tmp_path):
+    with pytest.raises(UserError, match=f"office.bas: {message}"):
+        copy_of(text, tmp_path).run(sample(1))

@@ -98,10 +98,6 @@ def test_the_arithmetic_alone_moves_published_digits():
     assert "XB= 14.52 YB= 25.15" in run(sample(1), "float64").printout
 
 
-def test_printer_slot_is_line_190s_digit():
-    assert "\x04PR# 1\n" in run(sample(1), dos=False, slot=1).printout
-
-
 def test_without_an_effect_on_other_runs():
     assert run(sample(3)) == run(sample(3))
 

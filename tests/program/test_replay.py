@@ -8,15 +8,15 @@ import captures
 import numpy as np
 import pytest
 import romcalls
+from emulation import load_machine
 
 from impact88 import library
 from impact88.apple.captured import memory_contents, result
 from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.program import kernel
-from impact88.program.copies import load_machine
-from impact88.program.kernel import Program, empty_results
-from impact88.program.replay import COMPUTED, PRINTED, replay
+from impact88.program.kernel import Program, row_type
+from impact88.program.replay import BLOCK, COMPUTED, PRINTED, replay
 from impact88.program.run import run
 from impact88.program.scene import sample
 
@@ -57,17 +57,16 @@ def test_pages_of_captured_runs(step):
 def test_memory_after_captured_runs(printed):
     """By the listing as it is printed into the library, and by its steps, walked."""
     steps = kernel.listing().steps
-    count, size = len(CASES), len(steps.variables)
-    results = empty_results(count, size, ELEMENTS, len(PRINTED))
-    Program(steps, in_library=printed).run(list(COLUMNS.values()), results)
+    rows = np.zeros(len(CASES), row_type(len(steps.variables), ELEMENTS, len(PRINTED), 0))
+    Program(steps, in_library=printed).run(list(COLUMNS.values()), rows)
     for row, case in enumerate(CASES):
         reals = {
-            name: f"{results.reals[row, k]:010x}"
-            for k, name in enumerate(steps.variables)
-            if int(results.assigned[row]) >> k & 1
+            name: f"{real:010x}"
+            for (k, name), real in zip(enumerate(steps.variables), rows["reals"][row], strict=True)
+            if int(rows["assigned"][row]) >> k & 1
         }
-        data = [f"{element:010x}" for element in results.array[row]]
-        array = {"dims": [7, 8], "data": data} if results.ending[row, 3] else None
+        data = [f"{element:010x}" for element in rows["array"][row]]
+        array = {"dims": [7, 8], "data": data} if rows["rows"][row] else None
         assert memory_contents(reals, array) == memory_contents(case["reals"], case["A"])
 
 
@@ -156,7 +155,6 @@ def test_zero_determinant_is_a_normal_end():
     results = replay(sample(1).replaced({"MA": "0"}))
     assert (results.error[0], results.line[0]) == ("", 1160)
     assert results.zero_determinant[0]
-    assert results.to_dict()["ERROR"].tolist() == ["ZERO DETERMINANT"]
 
 
 def test_stored_reals_are_those_of_the_emulator():
@@ -177,7 +175,7 @@ def test_columns_of_any_kind_and_one_value_for_all():
 
 @needs_library
 def test_threads_change_nothing():
-    count = kernel.BLOCK + 5
+    count = BLOCK + 5
     columns = {**sample(1), "UX": [f"{-29 - k / 1000:.3f}" for k in range(count)]}
     single, double = (replay(columns, pages=True, threads=n) for n in (1, 2))
     assert single.pages == double.pages
@@ -192,8 +190,8 @@ def test_threads_change_nothing():
         ({"MU": ["1", "1\n2"]}, "row 2: MU = '1\\\\n2'"),
         ({"MU": ["1", "1é"]}, "row 2: MU = '1é'"),
         ({"MU": ["1", "1E99x"]}, "row 2: MU = '1E99x'"),
-        ({"MU": ["1", 0.5]}, "MU, row 2: 0.5 is not a number as typed; expected a text"),
-        ({"MU": ["1", None]}, "MU, row 2: None"),
+        ({"MU": ["1", 0.5]}, "row 2: MU = 0.5 is not a number as typed; expected a text"),
+        ({"MU": ["1", None]}, "row 2: MU = None"),
         ({"MU": 0.5}, "MU: 0.5 is no text"),
         ({"MU": ["1", "2"], "E": ["1"] * 3}, "columns of different lengths: E 3, MU 2"),
         ({"MUU": "1"}, "did you mean MU"),

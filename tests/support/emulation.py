@@ -7,9 +7,12 @@ from typing import Any
 import captures
 
 from impact88.apple.captured import memory_contents, normalize_zero
-from impact88.program import copies
+from impact88.apple.emulator.emulator import Applesoft
+from impact88.files import packaged_text
+from impact88.program.copies import run_machine
+from impact88.program.run import Run
 from impact88.program.run import run as run_port
-from impact88.program.scene import Scene
+from impact88.program.scene import LISTING, Scene
 
 NOT_FOLLOWED = {
     "fresh_list_451": "graphics",
@@ -35,6 +38,21 @@ FUZZ = [
 ]
 
 Report = tuple[int, dict[str, str], list[str] | None]
+
+
+def load_machine(scene: Scene, *, dos: bool = True, text: str | None = None) -> Applesoft:
+    """An emulator with the listing or ``text``, a scene's lines typed in, its replies queued."""
+    machine = Applesoft(dos=dos, blanks=False)  # characters sent, as the port's printouts
+    machine.load(text or packaged_text("impact88.legacy", LISTING))
+    for line in scene.typed_lines():
+        machine.type_line(line)
+    machine.feed(*scene.keyboard())
+    return machine
+
+
+def run_emulated(scene: Scene, *, dos: bool = True) -> Run:
+    """The record of the listing's run on a scene in the emulator."""
+    return run_machine(load_machine(scene, dos=dos))
 
 
 def changes(reports: list[Report]) -> list[Report]:
@@ -65,7 +83,7 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
     """The emulator's variables after every line of the listing, and its run."""
     reports: list[Report] = []
 
-    machine = copies.load_machine(scene, dos=False, text=text)
+    machine = load_machine(scene, dos=False, text=text)
 
     def after(line: int) -> None:
         a = machine.array("A")
@@ -73,7 +91,7 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
         reports.append((line, reals, a and [normalize_zero(value) for value in a["data"]]))
 
     machine.machine.after_line = after
-    return reports, copies.run_machine(machine)
+    return reports, run_machine(machine)
 
 
 def first_difference(scene: Scene, text: str | None = None) -> Any:

@@ -76,9 +76,7 @@ def _run_copy(path: str, scene: Scene, arithmetic: str) -> Run:
 
     if arithmetic != "applesoft":
         raise UserError("--listing runs in the emulator; expected --arithmetic applesoft")
-    copy = ListingCopy(path)
-    copy.check_variables()
-    return copy.run(scene)
+    return ListingCopy(path).run(scene)
 
 
 def _ask(arithmetic: str) -> Run:

@@ -153,18 +153,12 @@ def _read_single(text: str, start: int) -> tuple[float, int]:
     return _single(value), end
 
 
-FLOAT32 = Arithmetic(
+FLOAT32 = FLOAT64._replace(
     name="float32",
     read=_read_single,
     LET=_single,
-    NEXT=FLOAT64.NEXT,
-    INT=FLOAT64.INT,
-    ABS=FLOAT64.ABS,
     SIN=lambda x: _single(math.sin(x)),
     COS=lambda x: _single(math.cos(x)),
     write=lambda x: FLOAT64.write(float(f"{x or 0.0:.{SINGLE_DIGITS - 1}E}")),
-    errors=FLOAT64.errors,
-    unset=float("0"),
-    zero=float("0"),
 )
 """Every number stored is rounded to 24 bits, as in GW-BASIC and its kind."""

@@ -74,15 +74,9 @@ class CopyListing(Listing):
     ----------
     copy : ListingCopy
         The copy.
-
-    Raises
-    ------
-    UserError
-        For a copy into which a scene's values cannot be typed.
     """
 
     def __init__(self, copy: ListingCopy) -> None:
-        copy.check_variables()
         self.copy = copy
 
     def run(self, columns: Columns) -> Outcomes:

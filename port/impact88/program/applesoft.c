@@ -604,29 +604,31 @@ static uint64_t packed(real x)
 EXPORT const char *applesoft_listing(void) { return LISTING; }
 
 /* Run a program on `count` scenes. text: for each input the texts of all scenes, each ended by a
-   newline, or one text for all where `single`. ending: code, line, size of the page, rows of the
-   array. array, pages: null where they are not wanted. */
+   newline, or one text for all where `single`. row: the results of each scene, as `row_type` in
+   kernel.py has them. */
 EXPORT void applesoft_run(const program *p, const char *const *text, const uint8_t *single, int64_t count, int inputs,
-                          int variables, int elements, int fields, int32_t (*ending)[4], uint64_t *assigned,
-                          uint64_t *reals, uint64_t *array, char *pages, char (*field)[FIELD])
+                          int variables, int elements, int fields, int page, char *row)
 {
     const char *input[INPUTS];
     run its;
     memcpy(input, text, (size_t)inputs * sizeof *text);
     for (int64_t n = 0; n < count; n++) {
+        int32_t *ending = (int32_t *)row;
+        uint64_t *words = (uint64_t *)row + 2;
         memset(&its, 0, sizeof its);
-        its.page = pages ? pages + n * PAGE : 0;
-        its.field = field + n * fields;
+        its.field = (char(*)[FIELD])(words + 1 + variables + elements);
         its.most = fields;
-        ending[n][0] = run_once(&its, p, input);
-        ending[n][1] = its.line;
-        ending[n][2] = its.page_size;
-        ending[n][3] = its.rows;
-        assigned[n] = its.assigned;
-        for (int k = 0; k < variables; k++) reals[n * variables + k] = packed(its.variable[k]);
-        for (int k = 0; array && k < elements; k++) array[n * elements + k] = packed(its.array[k]);
+        its.page = page ? its.field[fields] : 0;
+        ending[0] = run_once(&its, p, input);
+        ending[1] = its.line;
+        ending[2] = its.page_size;
+        ending[3] = its.rows;
+        words[0] = its.assigned;
+        for (int k = 0; k < variables; k++) words[1 + k] = packed(its.variable[k]);
+        for (int k = 0; k < elements; k++) words[1 + variables + k] = packed(its.array[k]);
         for (int k = 0; k < inputs; k++)
             if (!single[k]) input[k] = strchr(input[k], '\n') + 1;
+        row = its.field[fields] + page;
     }
 }
 

@@ -5,6 +5,7 @@ between two printouts is due to the arithmetic."""
 from __future__ import annotations
 
 import math
+from collections import namedtuple
 from collections.abc import Callable, Mapping
 
 from .. import decimals
@@ -17,7 +18,6 @@ from ..apple.applesoft.errorcodes import (
 )
 from ..apple.applesoft.operators import Real
 from ..apple.applesoft.real import ZERO, Number, absolute, floor
-from ..errors import UserError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     Function = Callable[[Any], Any]
 
 
-class Arithmetic:
+class Arithmetic(
+    namedtuple("Arithmetic", "name read LET NEXT INT ABS SIN COS write errors unset zero")
+):
     """The operations on numbers that the listing uses.
 
     ``read(text, start)``: the number that begins at ``start`` and the index after it; ``LET``:
@@ -35,6 +37,7 @@ class Arithmetic:
     Applesoft errors they stand for; ``unset``: the value of a variable never assigned, a zero that
     ``is`` distinguishes from ``zero``."""
 
+    __slots__ = ()
     name: str
     read: Callable[[str, int], tuple[Any, int]]
     LET: Function
@@ -48,26 +51,16 @@ class Arithmetic:
     unset: Any
     zero: Any
 
-    def __init__(self, **operations: Any) -> None:
-        self.__dict__.update(operations)
-        self._constants: dict[str, Any] = {}
-
     def error(self, exception: Exception) -> ApplesoftError | None:
         """Return an exception as an Applesoft error; None if it is not one of this arithmetic's."""
         if isinstance(exception, ApplesoftError):
             return exception
         make_error = self.errors.get(type(exception))
-        return make_error and make_error()
+        return make_error() if make_error else None
 
     def number(self, text: str) -> Any:
         """Return the number of a text, not yet rounded. Raises ApplesoftError OVERFLOW."""
         return self.read(text.upper(), 0)[0]
-
-    def constant(self, text: str) -> Any:
-        """Return the `number` of a constant of the program, which is read once."""
-        if text not in self._constants:
-            self._constants[text] = self.number(text)
-        return self._constants[text]
 
 
 def _read_real(text: str, start: int) -> tuple[Real, int]:
@@ -132,13 +125,3 @@ FLOAT64 = Arithmetic(
     zero=float("0"),
 )
 ARITHMETICS = {arithmetic.name: arithmetic for arithmetic in (APPLESOFT, FLOAT64)}
-
-
-def get_arithmetic(name: str | Arithmetic) -> Arithmetic:
-    """Return the arithmetic of that name; an `Arithmetic` is returned as it is. Raises
-    UserError."""
-    if isinstance(name, Arithmetic):
-        return name
-    if name not in ARITHMETICS:
-        raise UserError(f"{name!r} is not an arithmetic; expected {' or '.join(ARITHMETICS)}")
-    return ARITHMETICS[name]

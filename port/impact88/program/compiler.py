@@ -12,7 +12,7 @@ that are only printed. Anything else raises `NotCompiled`, and is for the emulat
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..apple.emulator.tokens import list_text, split_number, tokenise
@@ -34,8 +34,6 @@ OPERATIONS = {
 TOUCH makes a variable, which Applesoft does before it computes the value; PLACE and STORE_ELEMENT
 frame an assignment to an element; STRING and SHOW set and print a text variable; READ takes a
 reply, TYPED a value typed into a line; UNLESS jumps when the condition is 0."""
-JUMPS = ("UNLESS", "GOTO", "GOSUB", "RETURN", "FOR", "NEXT", "END")
-"""Operations that decide which step follows."""
 CODES = {name: code for code, name in enumerate(OPERATIONS)}
 
 MAX_DEPTH = 15  # numbers on the stack of applesoft.c
@@ -45,23 +43,36 @@ MAX_TEXTS = 256  # one byte of STRING's number
 FUNCTIONS = frozenset("INT ABS SGN SQR EXP LOG SIN COS TAN ATN".split())
 COMPARISONS = {">": 1, "=": 2, "<": 4}
 """Bits of COMPARE's number."""
-LEVELS: tuple[Mapping[str, str], ...] = (
-    {"OR": "OR"},
-    {"AND": "AND"},
-    dict.fromkeys(COMPARISONS, "COMPARE"),
-    {"+": "ADD", "-": "SUBTRACT"},
-    {"*": "MULTIPLY", "/": "DIVIDE"},
-    {"^": "POWER"},
-)
-"""Binary operators, the loosest first."""
+BINARY = {
+    "OR": "OR",
+    "AND": "AND",
+    "+": "ADD",
+    "-": "SUBTRACT",
+    "*": "MULTIPLY",
+    "/": "DIVIDE",
+    "^": "POWER",
+}
+PRECEDENCE = {
+    operator: level
+    for level, operators in enumerate(("OR", "AND", "> = <", "+ -", "* /", "^"), 1)
+    for operator in operators.split()
+}
 
+GIVEN = re.compile(
+    r'"[^"\n]*"?| REM .*| IF .*'  # a text; what is done at times only
+    r"|(?<![^:\n])(?: LET )?(?P<name>[A-Z][A-Z0-9]*) = "
+    r"(?P<number>(?: [-+] )*[0-9.](?:[0-9.E]| [-+] )*)(?=[:\n]|$)"
+    r'| (?P<verb>READ|INPUT) (?:"[^"]*";)?(?P<list>[A-Z0-9,$%]+)'
+)
+"""The statements of a line that give numbers to variables: constants, READ and INPUT."""
 _TOKEN = re.compile(
-    r"(?P<remark> REM .*)|(?P<data> DATA [^:]*)"
+    r"(?: REM .*| DATA [^:]*)?(?:(?P<end>:|$)"
     r'|(?P<text>"[^"]*"?)'
+    r"|\0(?P<typed>[0-9]+)"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]*)(?:E(?: [-+] )?[0-9]*)?)"
     r"| (?P<word>\S+) "
     r"|(?P<name>[A-Z][A-Z0-9]*[$%]?)"
-    r"|(?P<sign>.)",
+    r"|(?P<sign>.))",
     re.S,
 )
 
@@ -71,59 +82,10 @@ class NotCompiled(ValueError):
 
 
 class Token(NamedTuple):
-    """A token of a line: kind (a group of the pattern), text, and its place in the line's text."""
+    """A token of a line: its kind (a group of the pattern) and its text."""
 
     kind: str
     text: str
-    start: int
-    stop: int
-
-
-Statement = list[Token]
-NO_TOKEN = Token("", "", 0, 0)
-
-
-def spell(tokens: bytes) -> str:
-    """Return the bytes of a line as text: keywords between blanks, no other blanks but in texts."""
-    return "".join(map(list_text, tokens))
-
-
-def split_statements(text: str) -> Iterator[Statement]:
-    """Yield the statements of a line that `spell` wrote; empty ones are left out."""
-    statement: Statement = []
-    for match in _TOKEN.finditer(text):
-        if match[0] != ":":
-            kind = match.lastgroup or ""
-            statement.append(Token(kind, match[kind], *match.span()))
-        elif statement:
-            yield statement
-            statement = []
-    if statement:
-        yield statement
-
-
-def program_lines(text: str) -> Iterator[tuple[int, bytes]]:
-    """Yield number and tokens of each line of a listing."""
-    for row in text.splitlines():
-        number, statements = split_number(row) or (0, "")
-        yield number, tokenise(statements)
-
-
-def key_of(name: str) -> str:
-    """Return the part of a variable's name that Applesoft distinguishes."""
-    return name[:2] + name[-1] if name[2:] and name[-1] in "$%" else name[:2]
-
-
-def typed_constant(statement: Sequence[Token], inputs: Collection[str]) -> str | None:
-    """Return the input that a statement sets to a constant; None for another statement.
-
-    A scene's value is typed in place of that constant."""
-    tokens = [token for token in statement if token.text != "LET"]
-    if len(tokens) < 3 or tokens[1].text != "=":
-        return None
-    is_constant = all(token.kind == "number" or token.text in ("+", "-") for token in tokens[2:])
-    key = key_of(tokens[0].text)
-    return key if is_constant and key in inputs else None
 
 
 class Steps(NamedTuple):
@@ -139,8 +101,38 @@ class Steps(NamedTuple):
     inputs: list[str]
 
 
+def spell(tokens: bytes) -> str:
+    """Return the bytes of a line as text: keywords between blanks, no other blanks but in texts."""
+    return "".join(map(list_text, tokens))
+
+
+def program_lines(text: str) -> Iterator[tuple[int, str]]:
+    """Yield number and text, as `spell` writes it, of each line of a listing."""
+    for row in text.splitlines():
+        number, statements = split_number(row) or (0, "")
+        yield number, spell(tokenise(statements))
+
+
+def key_of(name: str) -> str:
+    """Return the part of a variable's name that Applesoft distinguishes."""
+    return name[:2] + name[-1] if name[2:] and name[-1] in "$%'" else name[:2]
+
+
+def with_values(line: str, values: Mapping[str, str]) -> str:
+    """Return a line with values, by `key_of` their variables, in place of the constants assigned
+    to these variables. READ becomes such assignments."""
+
+    def replace(match: re.Match[str]) -> str:
+        names = (match["name"] or match["list"] or "").split(",")
+        if match["verb"] == "INPUT" or not {*map(key_of, names)} <= {*values}:
+            return match[0]
+        return ":".join(f"{name} = {values[key_of(name)]}" for name in names)
+
+    return GIVEN.sub(replace, line)
+
+
 def compile_program(
-    lines: Iterable[tuple[int, bytes]],
+    lines: Iterable[tuple[int, str]],
     inputs: Iterable[str],
     kept: Mapping[int, Sequence[str]] | None = None,
 ) -> Steps:
@@ -148,11 +140,11 @@ def compile_program(
 
     Parameters
     ----------
-    lines : iterable of (int, bytes)
-        Number and tokens of each line, in order.
+    lines : iterable of (int, str)
+        Number and text of each line, as `spell` writes it, in order.
     inputs : iterable of str
         The variables whose values a run is given: typed in place of constants assigned to them, and
-        replied to INPUT and READ.
+        replied to INPUT.
     kept : mapping of int to sequence of str, optional
         Variables whose values at the beginning of a line are kept as NAME', for those that the
         program uses again.
@@ -167,262 +159,226 @@ def compile_program(
     NotCompiled
         For a program with anything else than real numbers, one array and printed texts.
     """
-    return _Compiler(list(inputs), kept or {}).compile(lines)
+    compiler = _Compiler(list(inputs))
+    for number, text in lines:
+        compiler.compile_line(number, text, (kept or {}).get(number, ()))
+    return compiler.finish()
 
 
 class _Compiler:
-    """The state of `compile_program`: the steps so far, and the place in the line."""
+    """The state of `compile_program`: the steps so far, and the tokens of a line that remain."""
 
-    def __init__(self, inputs: list[str], kept: Mapping[int, Sequence[str]]) -> None:
+    def __init__(self, inputs: list[str]) -> None:
         self._result = Steps([], [], [""], [], inputs)  # an unset text variable prints text 0
-        self._kept = kept
+        self._values = {name: f"\0{k}" for k, name in enumerate(inputs)}
         self._lines: dict[int, int] = {}
         self._strings: list[str] = []
         self._array = ""
         self._depth = 0
-        self._line = 0
-        self._tokens: Statement = []
-        self._at = 0
+        self._tokens: list[Token] = []
         self._conditions: list[int] = []  # UNLESS steps of this line, which jump to the next one
 
-    def compile(self, lines: Iterable[tuple[int, bytes]]) -> Steps:
-        """Return the steps of a program's lines."""
-        steps = self._result.steps
-        for self._line, tokens in lines:
-            self._lines[self._line] = len(steps)
-            self._emit("LINE", self._line)
-            for name in self._kept.get(self._line, ()):
-                self._emit("VARIABLE", self._variable(name))
-                self._emit("STORE", self._variable(f"{name}'"))
-            self._conditions = []
-            for self._tokens in split_statements(spell(tokens)):
-                self._at = 0
-                if self._tokens[0].kind not in ("remark", "data"):
-                    self._statement()
-                    if self._at < len(self._tokens):
-                        raise NotCompiled(f"{self._peek().text!r} in line {self._line}")
-            for place in self._conditions:
-                steps[place] = ("UNLESS", len(steps))
+    def compile_line(self, number: int, text: str, kept: Sequence[str]) -> None:
+        """Append the steps of a line."""
+        self._lines[number] = len(self._result.steps)
+        self._emit("LINE", number)
+        for name in kept:
+            self._emit("VARIABLE", self._variable(name))
+            self._emit("STORE", self._variable(f"{name}'"))
+        self._conditions = []
+        matches = _TOKEN.finditer(with_values(text, self._values))
+        self._tokens = [Token(m.lastgroup or "", m[m.lastgroup or 0]) for m in matches]
+        while self._tokens:
+            if not self._next_is("end"):
+                self._statement()
+            self._take("end")
+        for place in self._conditions:
+            self._result.steps[place] = ("UNLESS", len(self._result.steps))
+
+    def finish(self) -> Steps:
+        """Return the program, in which jumps go to steps instead of lines."""
         self._emit("END")
-        for k, (operation, number) in enumerate(steps):
+        for k, (operation, number) in enumerate(self._result.steps):
             if operation in ("GOTO", "GOSUB"):
                 if number not in self._lines:
                     raise NotCompiled(f"there is no line {number}")
-                steps[k] = (operation, self._lines[number])
-        if len(self._result.variables) > MAX_VARIABLES or len(self._strings) > MAX_STRINGS:
-            raise NotCompiled("too many variables")
-        if len(self._result.texts) > MAX_TEXTS:
-            raise NotCompiled("too many texts")
+                self._result.steps[k] = (operation, self._lines[number])
+        if (
+            len(self._result.variables) > MAX_VARIABLES
+            or len(self._strings) > MAX_STRINGS
+            or len(self._result.texts) > MAX_TEXTS
+        ):
+            raise NotCompiled("too many variables or texts")
         return self._result
 
-    # --- places and steps ---
+    # --- tokens and steps ---
 
-    def _peek(self) -> Token:
-        return self._tokens[self._at] if self._at < len(self._tokens) else NO_TOKEN
+    def _next_is(self, *expected: str) -> bool:
+        """Return True if the next token is one of these, or of one of these kinds."""
+        return not {*expected}.isdisjoint(self._tokens[0])
 
-    def _take(self, *expected: str) -> Token:
-        """Return the next token, one of ``expected`` if any are named. Raises NotCompiled."""
-        token = self._peek()
-        if expected and token.text not in expected:
-            raise NotCompiled(f"{token.text!r} in line {self._line}")
-        self._at += 1
-        return token
+    def _take(self, *expected: str) -> str:
+        """Return the next token's text. Raises NotCompiled if it is none of those expected."""
+        if expected and not self._next_is(*expected):
+            raise NotCompiled(self._tokens[0].text)
+        return self._tokens.pop(0).text
 
-    def _take_kind(self, kind: str) -> str:
-        """Return the text of the next token, which must be of a kind. Raises NotCompiled."""
-        token = self._take()
-        if token.kind != kind:
-            raise NotCompiled(f"{token.text!r} in line {self._line}")
-        return token.text
-
-    def _emit(self, operation: str, number: int = 0) -> int:
-        """Append a step and return its index."""
+    def _emit(self, operation: str, number: int = 0) -> None:
+        """Append a step."""
         pops, pushes = OPERATIONS[operation]
         self._depth += pushes - pops
         if self._depth > MAX_DEPTH:
-            raise NotCompiled(f"too deep a formula in line {self._line}")
+            raise NotCompiled("too deep a formula")
         self._result.steps.append((operation, number))
-        return len(self._result.steps) - 1
 
-    def _variable(self, name: str) -> int:
-        """Return the index of a real variable."""
-        key, variables = key_of(name) if "'" not in name else name, self._result.variables
-        if key[-1] in "$%":
-            raise NotCompiled(f"{name} in line {self._line}")
-        if key not in variables:
-            variables.append(key)
-        return variables.index(key)
-
-    def _string(self, name: str) -> int:
-        """Return the index of a text variable."""
-        if key_of(name) not in self._strings:
-            self._strings.append(key_of(name))
-        return self._strings.index(key_of(name))
+    def _emit_text(self, text: str) -> None:
+        self._emit("TEXT", self._text(text))
 
     def _text(self, text: str) -> int:
         """Return the index of a printed text."""
         self._result.texts.append(text)
         return len(self._result.texts) - 1
 
+    def _variable(self, name: str) -> int:
+        """Return the index of a real variable."""
+        if name[-1] in "$%":
+            raise NotCompiled(name)
+        return _index(self._result.variables, key_of(name))
+
     # --- statements ---
 
     def _statement(self) -> None:
-        token = self._take()
-        if token.text == "LET":
-            token = self._take()
-        if token.kind == "name":
-            self._assign(token.text)
-        elif token.kind == "word" and token.text in _STATEMENTS:
-            _STATEMENTS[token.text](self)
+        if self._next_is("LET"):
+            self._take()
+        is_name = self._next_is("name")
+        text = self._take("name", "word")
+        statement = getattr(self, f"do_{text.lower()}", None)
+        if is_name:
+            self._assign(text)
+        elif text in ("GOTO", "GOSUB"):
+            self._emit(text, self._whole_number())
+        elif text in ("RETURN", "END"):
+            self._emit(text)
+        elif statement:
+            statement()
         else:
-            raise NotCompiled(f"{token.text!r} in line {self._line}")
+            raise NotCompiled(text)
 
     def _assign(self, name: str) -> None:
         """NAME = formula, NAME$ = text or NAME(i,j) = formula."""
         if name.endswith("$"):
             self._take("=")
-            parts = [self._take_text()]
-            while self._peek().text == "+":
+            text = self._take("text").strip('"')
+            while self._next_is("+"):
                 self._take()
-                parts.append(self._take_text())
-            self._emit("STRING", self._string(name) * MAX_TEXTS + self._text("".join(parts)))
-        elif self._peek().text == "(":
+                text += self._take("text").strip('"')
+            string = _index(self._strings, key_of(name))
+            self._emit("STRING", string * MAX_TEXTS + self._text(text))
+        elif self._next_is("("):
             self._subscripts(name)
             self._emit("PLACE")
             self._take("=")
             self._formula()
             self._emit("STORE_ELEMENT")
         else:
-            self._assign_real(name)
-
-    def _assign_real(self, name: str) -> None:
-        variable = self._variable(name)
-        inputs = self._result.inputs
-        constant = typed_constant(self._tokens, inputs)
-        self._take("=")
-        self._emit("TOUCH", variable)
-        if constant and not self._conditions:
-            self._emit("TYPED", inputs.index(constant))
-            self._at = len(self._tokens)
-        else:
-            self._formula()
-        self._emit("STORE", variable)
-
-    def _take_text(self) -> str:
-        return self._take_kind("text").strip('"')
-
-    def _print(self) -> None:
-        newline = True
-        while self._at < len(self._tokens):
-            token = self._peek()
-            newline = token.text != ";"
-            if not newline:
-                self._take()
-            elif token.kind == "text":
-                self._emit("TEXT", self._text(self._take_text()))
-            elif token.text == "CHR$":
-                self._take()
-                self._take("(")
-                self._emit("TEXT", self._text(chr(self._whole_number() & 0x7F)))
-                self._take(")")
-            elif token.kind == "name" and token.text.endswith("$"):
-                self._emit("SHOW", self._string(self._take().text))
-            else:
-                self._formula()
-                self._emit("PRINT")
-        if newline:
-            self._emit("TEXT", self._text("\n"))
-
-    def _whole_number(self) -> int:
-        text = self._take_kind("number")
-        if not text.isdigit() or len(text) > 5:
-            raise NotCompiled(f"{text} in line {self._line}")
-        return int(text)
-
-    def _input(self) -> None:
-        prompt = "?\0"
-        if self._peek().kind == "text":
-            prompt = self._take_text() + "\0"
-            self._take(";")
-        indices = self._input_names()
-        self._emit("TEXT", self._text(prompt))
-        for index in indices:
-            self._emit("ECHO", index)
-            self._emit("TEXT", self._text("\n" if index == indices[-1] else ","))
-        self._store_inputs("READ", indices)
-
-    def _read(self) -> None:
-        """READ takes a scene's values as if they were typed into DATA."""
-        self._store_inputs("TYPED", self._input_names())
-
-    def _store_inputs(self, operation: str, indices: Sequence[int]) -> None:
-        for index in indices:
-            variable = self._variable(self._result.inputs[index])
+            variable = self._variable(name)
+            self._take("=")
             self._emit("TOUCH", variable)
-            self._emit(operation, index)
+            self._formula()
             self._emit("STORE", variable)
 
-    def _input_names(self) -> list[int]:
-        """Return the inputs that a list of variables names. Raises NotCompiled for others."""
-        names = [key_of(self._take_kind("name"))]
-        while self._peek().text == ",":
-            self._take()
-            names.append(key_of(self._take_kind("name")))
-        if any(names.count(n) > 1 or n not in self._result.inputs for n in names):
-            raise NotCompiled(f"values of {', '.join(names)} in line {self._line}")
-        return [self._result.inputs.index(name) for name in names]
+    def do_print(self) -> None:
+        """PRINT."""
+        newline = True
+        while not self._next_is("end"):
+            newline = not self._next_is(";")
+            if self._next_is("text"):
+                self._emit_text(self._take().strip('"'))
+            elif self._next_is("CHR$"):
+                self._take()
+                self._take("(")
+                self._emit_text(chr(self._whole_number(255) & 0x7F))
+                self._take(")")
+            elif self._next_is("name") and self._tokens[0].text.endswith("$"):
+                self._emit("SHOW", _index(self._strings, key_of(self._take())))
+            elif newline:
+                self._formula()
+                self._emit("PRINT")
+            else:
+                self._take()
+        if newline:
+            self._emit_text("\n")
 
-    def _if(self) -> None:
+    def _whole_number(self, largest: int = 63999) -> int:
+        text = self._take("number")
+        if not text.isdigit() or int(text) > largest:
+            raise NotCompiled(text)
+        return int(text)
+
+    def do_input(self) -> None:
+        """INPUT, of values that a run is given."""
+        prompt = "?"
+        if self._next_is("text"):
+            prompt = self._take().strip('"')
+            self._take(";")
+        names = [key_of(self._take("name"))]
+        while self._next_is(","):
+            self._take()
+            names.append(key_of(self._take("name")))
+        if not {*names} <= {*self._values}:
+            raise NotCompiled(f"values of {names}")
+        self._emit_text(f"{prompt}\0")
+        for place, name in enumerate(names, 1):
+            self._emit("ECHO", self._result.inputs.index(name))
+            self._emit_text("," if place < len(names) else "\n")
+        for name in names:
+            self._emit("TOUCH", self._variable(name))
+            self._emit("READ", self._result.inputs.index(name))
+            self._emit("STORE", self._variable(name))
+
+    def do_if(self) -> None:
+        """IF formula THEN statement, or THEN or GOTO line."""
         self._formula()
-        self._conditions.append(self._emit("UNLESS"))
-        word = self._take("THEN", "GOTO").text
-        if word == "GOTO" or self._peek().kind == "number":
-            self._goto()
+        self._conditions.append(len(self._result.steps))
+        self._emit("UNLESS")
+        if self._take("THEN", "GOTO") == "GOTO" or self._next_is("number"):
+            self._emit("GOTO", self._whole_number())
         else:
             self._statement()
 
-    def _goto(self) -> None:
-        self._emit("GOTO", self._whole_number())
-
-    def _gosub(self) -> None:
-        self._emit("GOSUB", self._whole_number())
-
-    def _for(self) -> None:
-        name = self._take_kind("name")
-        self._assign_real(name)
+    def do_for(self) -> None:
+        """FOR NAME = formula TO formula."""
+        name = self._take("name")
+        self._assign(name)
         self._take("TO")
         self._formula()
         self._emit("FOR", self._variable(name))
 
-    def _next(self) -> None:
-        self._emit("NEXT", self._variable(self._take_kind("name")))
+    def do_next(self) -> None:
+        """NEXT NAME."""
+        self._emit("NEXT", self._variable(self._take("name")))
 
-    def _dim(self) -> None:
-        """The first array is kept; others must have its subscripts or constants, and no use."""
+    def do_dim(self) -> None:
+        """DIM. The first array is kept; others, of the same subscripts or of constants, are not."""
         if self._array:
-            raise NotCompiled(f"a second DIM in line {self._line}")
-        self._array = key_of(self._take_kind("name"))
-        start = self._at
+            raise NotCompiled("a second DIM")
+        self._array = key_of(self._take("name"))
+        tokens = list(self._tokens)
         self._subscripts(self._array)
-        shape = "".join(token.text for token in self._tokens[start : self._at])
+        shape = "".join(token.text for token in tokens[: len(tokens) - len(self._tokens)])
         self._emit("DIM")
-        while self._peek().text == ",":
-            self._take()
-            self._take_kind("name")
-            start = self._at
-            while self._take().text != ")":
-                pass
-            bounds = self._tokens[start : self._at]
-            is_constant = all(token.kind == "number" or token.text in "(,)" for token in bounds)
-            if not is_constant and "".join(token.text for token in bounds) != shape:
-                raise NotCompiled(f"DIM of another shape in line {self._line}")
+        others = ""
+        while not self._next_is("end"):
+            others += self._take()
+        if not re.fullmatch(rf"(,[A-Z0-9]+({re.escape(shape)}|\([0-9,]+\)))*", others):
+            raise NotCompiled(others)
 
     # --- formulas ---
 
     def _subscripts(self, array: str) -> None:
         """Emit the two subscripts of an element."""
         if key_of(array) != self._array:
-            raise NotCompiled(f"{array}( in line {self._line}")
+            raise NotCompiled(array)
         self._take("(")
         self._formula()
         self._take(",")
@@ -430,24 +386,20 @@ class _Compiler:
         self._take(")")
 
     def _formula(self, level: int = 0) -> None:
-        """Emit a formula of operators from a level on; the ROM rounds each left operand."""
-        if level == len(LEVELS):
-            self._operand()
-            return
-        self._formula(level + 1)
-        while (operation := LEVELS[level].get(self._peek().text)) and self._peek().kind != "text":
+        """Emit a formula of operators above a level; the ROM rounds each left operand."""
+        self._operand()
+        while (precedence := PRECEDENCE.get(self._tokens[0].text, 0)) > level:
             bits = 0
-            while operation == "COMPARE" and self._peek().text in COMPARISONS:
-                bits |= COMPARISONS[self._take().text]
-            if operation != "COMPARE":
-                self._take()
+            while self._next_is(*COMPARISONS):
+                bits |= COMPARISONS[self._take()]
+            operation = "COMPARE" if bits else BINARY[self._take()]
             if self._result.steps[-1][0] not in ("VARIABLE", "ELEMENT"):  # these are round
                 self._emit("ROUND")
-            self._formula(level + 1)
+            self._formula(precedence)
             self._emit(operation, bits)
 
     def _operand(self) -> None:
-        kind, text, *_ = self._take()
+        kind, text = self._tokens.pop(0)
         if text == "-":  # binds more than ^: -3 ^ 2 is 9
             self._operand()
             self._emit("NEGATE")
@@ -455,34 +407,25 @@ class _Compiler:
             self._formula()
             self._take(")")
         elif kind == "number":
-            constants, number = self._result.constants, text.replace(" ", "")
-            if number not in constants:
-                constants.append(number)
-            self._emit("CONSTANT", constants.index(number))
-        elif kind == "word" and text in FUNCTIONS:
+            self._emit("CONSTANT", _index(self._result.constants, text.replace(" ", "")))
+        elif kind == "typed":
+            self._emit("TYPED", int(text))
+        elif text in FUNCTIONS:
             self._take("(")
             self._formula()
             self._take(")")
             self._emit(text)
-        elif kind == "name" and self._peek().text == "(":
+        elif kind == "name" and self._next_is("("):
             self._subscripts(text)
             self._emit("ELEMENT")
         elif kind == "name":
             self._emit("VARIABLE", self._variable(text))
         else:
-            raise NotCompiled(f"{text!r} in line {self._line}")
+            raise NotCompiled(text)
 
 
-_STATEMENTS: dict[str, Callable[[_Compiler], object]] = {
-    "PRINT": _Compiler._print,
-    "INPUT": _Compiler._input,
-    "READ": _Compiler._read,
-    "IF": _Compiler._if,
-    "GOTO": _Compiler._goto,
-    "GOSUB": _Compiler._gosub,
-    "RETURN": lambda compiler: compiler._emit("RETURN"),
-    "FOR": _Compiler._for,
-    "NEXT": _Compiler._next,
-    "DIM": _Compiler._dim,
-    "END": lambda compiler: compiler._emit("END"),
-}
+def _index(items: list[str], item: str) -> int:
+    """Return the index of an item, which is appended if it is new."""
+    if item not in items:
+        items.append(item)
+    return items.index(item)

@@ -13,26 +13,26 @@ from pathlib import Path
 
 from ..apple.applesoft import decimaltext
 from ..names import SCENE
-from .compiler import JUMPS, OPERATIONS, Steps, compile_program, program_lines
+from .compiler import OPERATIONS, Steps, compile_program, program_lines
 
 BEFORE = ("XA", "YA", "XB", "YB")
-"""Variables of line 340 that lines 700 and 710 use again."""
-KEPT = {350: BEFORE}
+"""Variables of line 340, kept at line 350, that lines 700 and 710 use again."""
 
 _JUMPS = {
     "UNLESS": "if (!t[0].e) goto at{a};",
     "GOTO": "goto at{a};",
     "GOSUB": "call(its, {k}); goto at{a}; after{k}:;",
-    "RETURN": "switch (returned(its)) {{ {calls} }} return;",
+    "RETURN": "switch (returned(its)) {{ {GOSUB} }} return;",
     "FOR": "loop(its, {a}, {k}, t[0]); after{k}:;",
-    "NEXT": "switch (next(its, {a})) {{ {loops} }}",
+    "NEXT": "switch (next(its, {a})) {{ {FOR} }}",
     "END": "return;",
 }
+"""The operations that decide which step follows."""
 
 
 def compile_listing(text: str) -> Steps:
     """Return the steps of the 1988 listing from the text of ``impact.bas``."""
-    return compile_program(program_lines(text), SCENE, KEPT)
+    return compile_program(program_lines(text), SCENE, {350: BEFORE})
 
 
 def digest(program: Steps) -> str:
@@ -42,7 +42,7 @@ def digest(program: Steps) -> str:
 
 def print_c(program: Steps) -> str:
     """Return the header of `applesoft.c` for a program."""
-    counts = ((name, *count) for name, count in OPERATIONS.items() if name not in JUMPS)
+    counts = ((name, *count) for name, count in OPERATIONS.items() if name not in _JUMPS)
     plain = " ".join(f"DO({name}, {pops}, {pushes})" for name, pops, pushes in counts)
     constants = (decimaltext.read(text)[0] for text in program.constants)
     reals = ", ".join(f"{{0x{m:X}, {e}, {s}}}" for e, m, s in constants)
@@ -56,34 +56,30 @@ def print_c(program: Steps) -> str:
         "real stack[STACK];",
         "#undef OP\n#define OP(f) called_##f",
         *_statements(program.steps),
-        "#undef OP\n#define OP(f) f",
         "}",
     )
     return "\n".join(rows) + "\n"
 
 
 def _statements(steps: list[tuple[str, int]]) -> Iterator[str]:
-    """Yield the C of each step. Operations inside loops are inlined, others called."""
+    """Yield the C of each step. Before the first loop operations are called, then inlined."""
     targets = {number for name, number in steps if name in ("GOTO", "GOSUB", "UNLESS")}
-
-    def cases(operation: str) -> str:
-        places = (k for k, (name, _) in enumerate(steps) if name == operation)
-        return " ".join(f"case {k}: goto after{k};" for k in places)
-
-    calls, loops = cases("GOSUB"), cases("FOR")
+    first_loop = next(k for k, (name, _) in enumerate(steps) if name == "FOR")
+    returns = {
+        jump: " ".join(
+            f"case {k}: goto after{k};" for k, (name, _) in enumerate(steps) if name == jump
+        )
+        for jump in ("GOSUB", "FOR")
+    }
     depth = 0
-    open_loops = 0
     for k, (name, number) in enumerate(steps):
-        if name in ("FOR", "NEXT"):
-            was_open, open_loops = open_loops, open_loops + (1 if name == "FOR" else -1)
-            if not (was_open and open_loops):
-                yield f"#undef OP\n#define OP(f) {'f' if open_loops else 'called_##f'}"
         pops, pushes = OPERATIONS[name]
         depth -= pops
-        step = _JUMPS.get(name, f"DO_{name};").format(a=number, k=k, calls=calls, loops=loops)
         label = f"at{k}:;" if k in targets else ""
-        place = f"real *const t = stack + {depth}; " if pops or pushes else ""
-        yield f"{label} {{ enum {{ a = {number} }}; {place}{step} }}"
+        step = _JUMPS.get(name, f"DO_{name};").format(a=number, k=k, **returns)
+        if k == first_loop:
+            yield "#undef OP\n#define OP(f) f"
+        yield f"{label} {{ enum {{ a = {number} }}; real *const t = stack + {depth}; {step} }}"
         depth += pushes
 
 

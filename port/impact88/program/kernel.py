@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from functools import cache
-from itertools import starmap
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,10 +17,9 @@ from .compiler import CODES, Steps
 from .generate import compile_listing, digest
 from .scene import LISTING
 
+Rows = npt.NDArray[np.void]
 FIELD = 16  # bytes of a printed number, as in applesoft.c
 PAGE = 2048  # characters of a page, as there
-BLOCK = 4096
-"""Scenes of one call: enough for its overhead to vanish, few enough for the processor's cache."""
 OUTSIDE = 0x200
 """The code of a run that applesoft.c leaves to the port or the emulator: it needs something else,
 does not end, or has a text that is no number."""
@@ -46,29 +42,22 @@ class Source(ctypes.Structure):
     )
 
 
-class Results(NamedTuple):
-    """The results of runs, a row for each.
+def row_type(variables: int, elements: int, fields: int, page: int) -> npt.DTypeLike:
+    """Return the type of a run's results, as applesoft.c writes them.
 
-    ``ending``: the error's code, 0 for none, its line, the size of the page, rows of the array;
-    ``assigned``: a bit for each variable; ``reals``: variables as stored bytes; ``array``: its
-    elements, first subscript fastest; ``fields``: the numbers printed, in order."""
-
-    ending: npt.NDArray[np.int32]
-    assigned: npt.NDArray[np.uint64]
-    reals: npt.NDArray[np.uint64]
-    array: npt.NDArray[np.uint64]
-    fields: npt.NDArray[np.bytes_]
-
-
-def empty_results(count: int, variables: int, elements: int, fields: int) -> Results:
-    """Return results of ``count`` runs, to be filled."""
-    return Results(
-        np.zeros((count, 4), np.int32),
-        np.zeros(count, np.uint64),
-        np.zeros((count, variables), np.uint64),
-        np.zeros((count, elements), np.uint64),
-        np.zeros((count, fields), f"S{FIELD}"),
-    )
+    ``code``, ``line``: the error's code, 0 for none, and the line of the end; ``size``: characters
+    of the page; ``rows``: those of the array, 0 before DIM; ``assigned``: a bit for each variable;
+    ``reals``: variables as stored bytes; ``array``: its elements, first subscript fastest;
+    ``fields``: the numbers printed, in order; ``page``: all that was printed, if ``page`` is
+    `PAGE`."""
+    return [
+        *((name, "i4") for name in ("code", "line", "size", "rows")),
+        ("assigned", "u8"),
+        ("reals", "u8", (variables,)),
+        ("array", "u8", (elements,)),
+        ("fields", f"S{FIELD}", (fields,)),
+        ("page", "u1", (page,)),
+    ]
 
 
 class Program:
@@ -86,62 +75,36 @@ class Program:
         self._arrays = (
             np.array(codes, np.int32),
             real_array(*(decimaltext.read(text)[0] for text in steps.constants)),
-            "".join(steps.texts).encode("ascii"),
             np.cumsum([0, *map(len, steps.texts)], dtype=np.int32),
         )
-        code, constants, texts, starts = self._arrays
+        code, constants, starts = self._arrays
         self.source = Source(
             None if in_library else code.ctypes.data,
             ctypes.addressof(constants),
-            texts,
+            "".join(steps.texts).encode("ascii"),
             starts.ctypes.data,
         )
 
-    def run(
-        self,
-        columns: Sequence[Sequence[str]],
-        results: Results,
-        pages: npt.NDArray[np.bytes_] | None = None,
-    ) -> None:
-        """Run the program on some scenes, and fill their results and pages.
+    def run(self, columns: Sequence[Sequence[str]], rows: Rows) -> None:
+        """Run the program on some scenes, and fill a row of results for each.
 
-        ``columns``: for each input the texts of all scenes, or one for all; ``pages``: `PAGE`
-        characters for each scene. Raises TypeError and ValueError for what is no text of one line
-        in ASCII."""
-        texts = ["\n".join(column).upper().encode("ascii") + b"\n" for column in columns]
-        if any(t.count(b"\n") != len(c) for t, c in zip(texts, columns, strict=True)):
-            raise ValueError("a text of two lines")
-        *sizes, fields = (array.shape[1] for array in results[2:])
-        *arrays, fields_address = (ctypes.c_void_p(array.ctypes.data) for array in results)
+        ``columns``: for each input the texts of all scenes, or one for all, of one line of ASCII
+        each."""
+        texts = ["\n".join((*column, "")).upper().encode("ascii") for column in columns]
         compiled_library().applesoft_run(
             ctypes.byref(self.source),
             (ctypes.c_char_p * len(texts))(*texts),
             bytes(len(column) == 1 for column in columns),
-            ctypes.c_int64(len(results.ending)),
+            ctypes.c_int64(len(rows)),
             len(columns),
-            *sizes,
-            fields,
-            *arrays,
-            None if pages is None else ctypes.c_void_p(pages.ctypes.data),
-            fields_address,
+            *(rows[name].shape[1] for name in ("reals", "array", "fields", "page")),
+            ctypes.c_void_p(rows.ctypes.data),
         )
 
 
 def real_array(*numbers: tuple[int, int, int]) -> Any:
     """Return numbers, as exponent, mantissa and sign, as an array for applesoft.c."""
     return (Real * len(numbers))(*(Real(m, e, s) for e, m, s in numbers))
-
-
-def run_blocks(work: Callable[[int, int], object], count: int, threads: int | None) -> None:
-    """Call ``work(start, stop)`` for blocks of ``count`` scenes, on several threads where several
-    blocks are to be done. The library releases Python's lock."""
-    blocks = [(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
-    workers = min(len(blocks), threads or os.cpu_count() or 1)
-    if workers < 2:
-        list(starmap(work, blocks))
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda block: work(*block), blocks))
 
 
 @cache

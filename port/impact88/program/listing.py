@@ -71,7 +71,7 @@ def impact(
     )
     ZERO, UNSET = arithmetic.zero, arithmetic.unset
     C_1, C_6, C_10, C_1E3, C_1E4, C_1E_9, C_3_14159265 = map(
-        arithmetic.constant, ("1", "6", "10", "1E3", "1E4", "1E-9", "3.14159265")
+        arithmetic.number, ("1", "6", "10", "1E3", "1E4", "1E-9", "3.14159265")
     )
 
     def DATA(name: str) -> Any:

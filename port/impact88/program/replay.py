@@ -6,8 +6,10 @@ library the port runs each scene. Both give the Apple's own bits.
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -16,13 +18,13 @@ import numpy.typing as npt
 from ..apple.applesoft.errorcodes import CODES, ApplesoftError
 from ..apple.applesoft.operators import Real
 from ..errors import UserError
-from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, check_names, missing
+from ..names import FINAL_VELOCITIES, check_names
 from . import kernel
-from .arithmetics import APPLESOFT, Arithmetic
+from .arithmetics import APPLESOFT
 from .generate import BEFORE
-from .kernel import OUTSIDE, PAGE, Program, Results, empty_results
-from .run import BELL, Run, run
-from .scene import Scene
+from .kernel import OUTSIDE, PAGE, Program, Rows
+from .run import BELL, run
+from .scene import Scene, check_number, complete
 
 Mask = npt.NDArray[np.bool_]
 Texts = npt.NDArray[np.str_]
@@ -30,23 +32,11 @@ Stored = npt.NDArray[np.uint64]
 Floats = npt.NDArray[np.float64]
 Cells = Mapping[str, list[Any]]
 
-PRINTED = {
-    name: line
-    for line, names in (
-        (620, "MA MB IA IB"),
-        (630, "DA DB"),
-        (650, "PA PB TA TB GA"),
-        (660, "UX UY WA XA YA"),
-        (670, "VX VY WB XB YB"),
-        (680, "E MUP EM"),
-        (690, "KI LOSS"),
-        (730, "VAX VAY XAF YAF"),
-        (740, "VBX VBY XBF YBF"),
-        (760, "WAF WBF"),
-    )
-    for name in names.split()
-}
-"""The numbers of a page in printing order, and the line that prints each."""
+PRINTED = (
+    "MA MB IA IB DA DB PA PB TA TB GA UX UY WA XA YA VX VY WB XB YB E MUP EM KI LOSS "
+    "VAX VAY XAF YAF VBX VBY XBF YBF WAF WBF"
+).split()
+"""The numbers of a page in printing order."""
 
 COMPUTED = {
     name: line
@@ -64,10 +54,15 @@ COMPUTED = {
 }
 """The results, and the line after which the program has each."""
 
+LINE_340 = slice(31, 35)
+"""The values that line 340 stores, among all that a run stores."""
 ROWS, COLUMNS = 7, 8  # of the array A
-ZERO_DETERMINANT_LINE = 1160
-FIRST_SUBROUTINE = 1000
-"""Line from which on the program is in a subroutine that line 570 calls."""
+BLOCK = 4096
+"""Scenes of one call of the library: enough for its overhead to vanish, few enough for the
+processor's cache."""
+END_LINE, ZERO_DETERMINANT_LINE = 780, 1160
+CALL_LINE, FIRST_SUBROUTINE = 570, 1000
+"""The line that calls the subroutines, and the first of theirs."""
 FINAL_SPINS = ("WAF", "WBF")
 """Results that line 750 passes over unless M is N."""
 _VARIABLES = (
@@ -75,6 +70,7 @@ _VARIABLES = (
 )
 """Results that are another variable of the listing."""
 _KINDS = {code: kind for kind, code in CODES.items()}
+_TYPED = re.compile(r"[ -~]*")
 _DISK_COMMAND = re.compile(r"^\x04.*\n", re.M)
 
 
@@ -86,8 +82,8 @@ class Replay:
 
     Attributes
     ----------
-    count : int
-        The number of scenes.
+    names : tuple of str
+        The names of the results.
     error : ndarray of str
         The message that ended each scene, "" without one. ZERO DETERMINANT is a normal end.
     line : ndarray of int
@@ -106,35 +102,22 @@ class Replay:
     ['44.43', '57.47']
     """
 
-    def __init__(self, results: Results, pages: list[str] | None) -> None:
-        code, line = results.ending[:, 0], results.ending[:, 1]
-        self.count = len(code)
-        self.zero_determinant = (code == 0) & (line == ZERO_DETERMINANT_LINE)
-        self.line = np.where((code != 0) | self.zero_determinant, line, 0)
-        self.error = np.full(self.count, "", "<U48")
-        for at in code.nonzero()[0].tolist():
-            self.error[at] = _error(results, at).message
-        self.fields = results.fields
-        self.pages = pages
-        self._results = results
-        # while a subroutine runs, the main program is in line 570
-        in_main = np.where(self.line >= FIRST_SUBROUTINE, 570, self.line)
-        self._reached = np.where(self.line == 0, FIRST_SUBROUTINE, in_main)
+    names = tuple(COMPUTED)
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the results."""
-        return tuple(COMPUTED)
+    def __init__(self, rows: Rows, pages: list[str] | None) -> None:
+        code, line = rows["code"], rows["line"]
+        self.zero_determinant = (code == 0) & (line == ZERO_DETERMINANT_LINE)
+        self.line = np.where(line == END_LINE, 0, line)
+        self.error = np.full(len(rows), "", "<U48")
+        for row in code.nonzero()[0]:
+            self.error[row] = _message(rows[row])
+        self.fields = rows["fields"]
+        self.pages = pages
+        self._rows = rows
+        self._main_line = np.where(line >= FIRST_SUBROUTINE, CALL_LINE, line)
 
     def __len__(self) -> int:
-        return self.count
-
-    def __repr__(self) -> str:
-        errors = int(np.count_nonzero(self.error != ""))
-        return (
-            f"<Replay of {self.count:,} scenes: {errors:,} ended by an error, "
-            f"{int(self.zero_determinant.sum()):,} by a zero determinant>"
-        )
+        return len(self._rows)
 
     def present(self, name: str) -> Mask:
         """Return a mask of the scenes that have a result.
@@ -150,9 +133,9 @@ class Replay:
             True for each scene that got past the line of the result.
         """
         check_names([name], COMPUTED, "result of a replay")
-        present = self._reached > COMPUTED[name]
+        present = self._main_line > COMPUTED[name]
         if name in FINAL_SPINS:
-            present &= self.reals("N") == self.reals("M")
+            present &= self.printed(name) != ""
         return present
 
     def printed(self, name: str) -> Texts:
@@ -161,7 +144,7 @@ class Replay:
         Parameters
         ----------
         name : str
-            A name of `PRINTED`; MU is the MUP that line 680 prints.
+            A name of `PRINTED`; the MU that line 680 prints is MUP.
 
         Returns
         -------
@@ -169,9 +152,8 @@ class Replay:
             The field of each scene, such as "-8.78" or "5E-03", "" for a scene that ended before
             it.
         """
-        check_names([name], [*PRINTED, "MU"], "printed field")
-        column = list(PRINTED).index("MUP" if name == "MU" else name)
-        return self.fields[:, column].astype(str)
+        check_names([name], PRINTED, "printed field")
+        return self.fields[:, PRINTED.index(name)].astype(str)
 
     def reals(self, name: str) -> Stored:
         """Return a variable or result as the five bytes that the Apple stored.
@@ -191,11 +173,12 @@ class Replay:
         if name in FINAL_VELOCITIES:  # in column M + 1 of the array A
             column = np.clip(unpack(self.reals("M")), 0, COLUMNS - 2).astype(int) + 1
             place = FINAL_VELOCITIES.index(name) + 1 + ROWS * column
-            values = np.take_along_axis(self._results.array, place[:, None], 1)[:, 0]
+            values: Stored = self._rows["array"][np.arange(len(self)), place]
         else:
             variables = kernel.listing().steps.variables
-            check_names([_VARIABLES.get(name, name)], variables, "variable of the listing")
-            values = self._results.reals[:, variables.index(_VARIABLES.get(name, name))]
+            variable = _VARIABLES.get(name, name)
+            check_names([variable], variables, "variable of the listing")
+            values = self._rows["reals"][:, variables.index(variable)]
         return values * self.present(name) if name in COMPUTED else values
 
     def floats(self, name: str) -> Floats:
@@ -217,22 +200,10 @@ class Replay:
         values = unpack(self.reals(name))
         return np.where(self.present(name), values, np.nan) if name in COMPUTED else values
 
-    def to_dict(self) -> dict[str, npt.NDArray[Any]]:
-        """Return all results as columns of one length, which a DataFrame of any library takes.
 
-        Returns
-        -------
-        dict of str to ndarray
-            Every result as floats, and of each scene ERROR, the message that ended it, and LINE.
-        """
-        ending = np.where(self.zero_determinant, "ZERO DETERMINANT", self.error)
-        results = {name: self.floats(name) for name in self.names}
-        return {**results, "ERROR": ending, "LINE": self.line}
-
-
-def _error(results: Results, row: int) -> ApplesoftError:
-    code, line, *_ = results.ending[row].tolist()
-    return ApplesoftError(_KINDS[code & 0xFF], line)
+def _message(row: np.void) -> str:
+    """Return the message of the error that ended a run."""
+    return ApplesoftError(_KINDS[int(row["code"]) & 0xFF], int(row["line"])).message
 
 
 def unpack(stored: Stored) -> Floats:
@@ -283,31 +254,18 @@ def replay(
     >>> impact88.replay(impact88.sample(1)).printed("XB").tolist()
     ['14.51']
     """
-    cells = read_columns(columns)
-    variables = kernel.listing().steps.variables
-    results = empty_results(_count(cells), len(variables), ROWS * COLUMNS, len(PRINTED))
-
-    def run_port(row: int, scene: Scene) -> str:
-        numbers: list[str] = []
-        record = run(scene, _recording(numbers))
-        _fill(results, row, record, numbers)
-        return record.printout
-
-    texts = run_scenes(kernel.listing(), cells, results, run_port, pages, threads)
-    return Replay(results, texts if pages else None)
+    sizes = ROWS * COLUMNS, len(PRINTED), PAGE if pages else 0
+    rows, printouts = run_scenes(kernel.listing(), columns, _run_port, sizes, threads)
+    return Replay(rows, printouts if pages else None)
 
 
 def read_columns(columns: Mapping[str, Any]) -> Cells:
     """Return the texts of each input, or one for all scenes. Raises UserError."""
-    if not isinstance(columns, Mapping):
-        raise UserError(f"{columns!r:.60} is not a mapping of names to columns")
-    check_names(columns, SCENE, "value of a scene")
-    if names := [name for name in SCENE if name not in columns and name != "M"]:
-        raise UserError(missing(names))
-    cells = {name: _texts(name, columns.get(name, DEFAULT_M)) for name in SCENE}
-    if len({len(column) for column in cells.values()} - {1}) > 1:
-        sizes = ", ".join(f"{name} {len(c)}" for name, c in cells.items() if len(c) != 1)
-        raise UserError(f"columns of different lengths: {sizes}")
+    cells = {name: _texts(name, column) for name, column in complete(columns).items()}
+    sizes = {name: len(column) for name, column in cells.items() if len(column) != 1}
+    if len({*sizes.values()}) > 1:
+        lengths = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise UserError(f"columns of different lengths: {lengths}")
     return cells
 
 
@@ -317,130 +275,100 @@ def _texts(name: str, column: Any) -> list[Any]:
     if isinstance(column, (str, int, np.integer)):
         column = [column]
     try:
-        cells = column if isinstance(column, list) else list(column)
+        cells = column.tolist() if isinstance(column, np.ndarray) else list(column)
     except TypeError:
         raise UserError(f"{column!r:.60} is no text and no column of texts", name) from None
-    try:
-        "".join(cells)  # faster than looking at each
-        return cells
-    except TypeError:
-        pass
-    for row, cell in enumerate(cells):
-        if isinstance(cell, bool) or not isinstance(cell, (str, int, np.integer)):
-            raise UserError(
-                f"{cell!r:.60} is not a number as typed; expected a text or a whole number",
-                f"{name}, row {row + 1}",
-            )
-    return list(map(str, cells))
-
-
-def _count(cells: Cells) -> int:
-    """Return the number of scenes: 1 where no column has another length."""
-    return next((len(column) for column in cells.values() if len(column) != 1), 1)
+    if set(map(type, cells)) != {str} or not _TYPED.fullmatch("".join(cells)):
+        cells = [str(cell) if isinstance(cell, (int, np.integer)) else cell for cell in cells]
+        for row, cell in enumerate(cells, 1):
+            check_number(name, cell, f"row {row}")
+    return cells
 
 
 def run_scenes(
     program: Program | None,
-    cells: Cells,
-    results: Results,
-    run_singly: Callable[[int, Scene], str],
-    pages: bool,
+    columns: Mapping[str, Any],
+    run_singly: Callable[[Rows, Scene], str],
+    sizes: tuple[int, int, int],
     threads: int | None = None,
-) -> list[str]:
-    """Run scenes, fill their results and return their printouts, "" without ``pages``.
+) -> tuple[Rows, list[str]]:
+    """Return the rows of results of scenes, and their printouts, "" without pages.
 
-    ``run_singly``: runs the scene of a row that the library leaves, which are all without it.
-    Raises UserError for a text that is not a number."""
-    printouts = [""] * len(results.ending)
+    ``run_singly``: runs a scene that the library leaves, which are all without it, fills its row,
+    and returns its printout; ``sizes``: of array, fields and page in a row, see `kernel.row_type`.
+    Raises UserError for columns that cannot be used."""
+    cells = read_columns(columns)
+    variables = len(program.steps.variables) if program else 0
+    count = max({len(column) for column in cells.values()} - {1}, default=1)
+    rows = np.zeros(count, kernel.row_type(variables, *sizes))
+    printouts = [""] * count
 
-    def work(start: int, stop: int) -> None:
-        part = Results._make(array[start:stop] for array in results)
-        code = np.full(stop - start, OUTSIDE)
-        text = np.empty((stop - start, PAGE if pages else 0), "S1")
+    def work(start: int) -> None:
+        part = rows[start : start + BLOCK]
         if program and kernel.compiled_library():
-            columns = [cells[name] for name in program.names]
-            columns = [column if len(column) == 1 else column[start:stop] for column in columns]
-            try:
-                program.run(columns, part, text if pages else None)
-            except ValueError:  # other characters than ASCII's, or several lines
-                for row in range(start, stop):
-                    _scene(cells, row)
-                raise
-            code = part.ending[:, 0]
-        characters = text.tobytes()
-        sizes = part.ending[:, 2].tolist()
-        rows = range(stop - start) if pages else code.nonzero()[0].tolist()
-        for row in rows:
-            if code[row] == OUTSIDE:
-                printouts[start + row] = run_singly(start + row, _scene(cells, start + row))
-            elif code[row] == CODES["OVERFLOW"]:
-                _scene(cells, start + row)  # raises if the number too large is none
-            if pages and code[row] != OUTSIDE:
-                page = characters[PAGE * row : PAGE * row + sizes[row]]
-                printouts[start + row] = _with_error(part, row, page.decode("ascii"))
+            texts = [cells[name] for name in program.names]
+            program.run([t if len(t) == 1 else t[start : start + BLOCK] for t in texts], part)
+        else:
+            part["code"] = OUTSIDE
+        for row in range(len(part)) if part["page"].size else part["code"].nonzero()[0].tolist():
+            code = part["code"][row]
+            if code in (OUTSIDE, CODES["OVERFLOW"]):  # of a text, too, that is no number
+                scene = _scene(cells, start + row)
+            if code == OUTSIDE:
+                printouts[start + row] = run_singly(part[row : row + 1], scene)
+            else:
+                printouts[start + row] = _printout(part[row])
 
-    kernel.run_blocks(work, len(results.ending), threads)
-    return printouts
+    starts = range(0, len(rows), BLOCK)
+    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:  # the library runs without the GIL
+        list((pool.map if len(starts) > 1 else map)(work, starts))
+    return rows, printouts
 
 
 def _scene(cells: Cells, row: int) -> Scene:
     """Return the scene of a row. Raises UserError if its texts cannot be typed."""
-    texts = {name: column[0] if len(column) == 1 else column[row] for name, column in cells.items()}
+    texts = {name: column[row % len(column)] for name, column in cells.items()}
     scene = Scene(texts, source=f"row {row + 1}")
     scene.check_typed()
     return scene
 
 
-def _with_error(part: Results, row: int, page: str) -> str:
-    """Return a printout as a disk system lets it pass, with the error that ended it."""
-    page = _DISK_COMMAND.sub("", page)
-    if not part.ending[row, 0]:
-        return page
-    return f"{page}\n{_error(part, row).message.replace(' IN', BELL + ' IN')}"
+def _printout(row: np.void) -> str:
+    """Return a page as a disk system lets it pass, with the error that ended it."""
+    page = _DISK_COMMAND.sub("", row["page"].tobytes()[: row["size"]].decode("ascii"))
+    return f"{page}\n{_message(row).replace(' IN', BELL + ' IN')}" if row["code"] else page
 
 
 # --- one scene by the port ---
 
 
-def _recording(fields: list[str]) -> Arithmetic:
-    """Return the Applesoft arithmetic, appending each number that it writes to ``fields``."""
+def _run_port(rows: Rows, scene: Scene) -> str:
+    """Run a scene by the port, fill its row and return its printout."""
+    fields: list[str] = []
+    stored: list[Real] = []
 
     def write(x: Real) -> str:
         fields.append(APPLESOFT.write(x))
         return fields[-1]
 
-    return Arithmetic(**{**vars(APPLESOFT), "write": write})
+    def store(x: Real) -> Real:
+        stored.append(APPLESOFT.LET(x))
+        return stored[-1]
 
-
-def _fill(part: Results, row: int, record: Run, fields: Sequence[str]) -> None:
-    """Set a row of results from a run of the port."""
-    code, line = 0, ZERO_DETERMINANT_LINE if record.zero_determinant else 0
-    if record.error:
-        kind = record.error.removeprefix("?").partition(" ERROR")[0]
-        code, line = CODES[kind], record.line or 0
-    part.ending[row] = code, line, 0, 0
-    part.fields[row] = [*fields, *[""] * (len(PRINTED) - len(fields))]
+    record = run(scene, APPLESOFT._replace(write=write, LET=store))
+    ending = ZERO_DETERMINANT_LINE if record.zero_determinant else END_LINE
+    rows["code"] = CODES.get((record.error or "")[1:].partition(" ERROR")[0], 0)
+    rows["line"] = record.line or ending
+    rows["fields"][0, : len(fields)] = fields
     if record.A:
-        part.array[row] = [_stored_number(value) for value in record.A["data"]]
-    values = dict(record.reals)
-    if not code or line > COMPUTED["XA"]:
-        values |= _contact_velocities(record.reals)
+        rows["array"] = list(map(_stored_number, record.A["data"]))
+    kept = {f"{n}'": x.to_bytes().hex() for n, x in zip(BEFORE, stored[LINE_340], strict=False)}
+    values = {**record.reals, **kept}
     for k, name in enumerate(kernel.listing().steps.variables):
-        part.reals[row, k] = _stored_number(values.get(name, "0" * 10))
+        rows["reals"][0, k] = _stored_number(values.get(name, "0"))
+    return record.printout
 
 
 def _stored_number(text: str) -> int:
     """Return stored bytes as a number; of a zero all are 0."""
     return 0 if text.startswith("00") else int(text, 16)
-
-
-def _contact_velocities(reals: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables of line 340, which lines 700 and 710 use again."""
-    x = {name: Real.from_stored(value) for name, value in reals.items()}
-    values = (
-        x["UX"] + x["D3"] * x["WA"],
-        x["UY"] - x["D4"] * x["WA"],
-        x["VX"] - x["D1"] * x["WB"],
-        x["VY"] + x["D2"] * x["WB"],
-    )
-    return {f"{n}'": v.to_bytes().hex() for n, v in zip(BEFORE, values, strict=True)}

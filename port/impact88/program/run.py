@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import re
 import sys
-from bisect import bisect
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
@@ -19,10 +18,10 @@ from types import CodeType, FrameType, TracebackType
 
 from ..apple.applesoft.console import Console
 from ..apple.applesoft.operators import Real
-from ..errors import UserError
 from ..files import packaged_text
-from . import arithmetics, listing
-from .arithmetics import Arithmetic
+from ..names import check_names
+from . import listing
+from .arithmetics import ARITHMETICS, Arithmetic
 from .scene import REPLY_LINES, Scene
 
 TYPE_CHECKING = False
@@ -96,12 +95,6 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
         ending = self.error or ("ZERO DETERMINANT" if self.zero_determinant else "END")
         return f"<Run: {ending}; {len(self.printout)} characters, {len(self.reals)} variables>"
 
-    def _repr_html_(self) -> str:
-        """Return the printout as HTML for a notebook."""
-        from html import escape
-
-        return f"<pre>{escape(self.page)}</pre>"
-
 
 def page(text: str) -> str:
     """Return a printout without the characters that only a terminal acts on: the form feed of line
@@ -113,7 +106,6 @@ def start(
     data: Mapping[str, str],
     console: Console,
     arithmetic: str | Arithmetic = "applesoft",
-    slot: str = "0",
     after_line: AfterLine | None = None,
 ) -> Run:
     """Run the port on a console until the program ends.
@@ -121,12 +113,16 @@ def start(
     The printout, with any error message, goes to the console; that of the returned Run is empty.
     Raises UserError for an unknown arithmetic, and `console.EndOfInput`.
     """
-    chosen = arithmetics.get_arithmetic(arithmetic)
+    if isinstance(arithmetic, Arithmetic):
+        chosen = arithmetic
+    else:
+        check_names([arithmetic], ARITHMETICS, "arithmetic")
+        chosen = ARITHMETICS[arithmetic]
     error, zero_determinant = None, False
     names: Mapping[str, Any]
     try:
         with _stopping(after_line, chosen) if after_line else nullcontext():
-            names = listing.impact(data, chosen, console, slot)
+            names = listing.impact(data, chosen, console)
     except listing.End as end:
         zero_determinant = True
         names = _failure(end.__traceback__)[1]
@@ -142,8 +138,8 @@ def start(
     reals, array = _variables(names, chosen.unset)
     return Run(
         "",
-        error.message if error else None,
-        error.line if error else None,
+        error and error.message,
+        error and error.line,
         {name: _record_value(value) for name, value in reals.items()},
         {"dims": array.sizes, "data": list(map(_record_value, array.data))} if array else None,
         zero_determinant,
@@ -155,7 +151,6 @@ def run(
     arithmetic: str | Arithmetic = "applesoft",
     *,
     dos: bool = True,
-    slot: int = 0,
     after_line: AfterLine | None = None,
 ) -> Run:
     """Run the 1988 program on a scene and return its printout, variables and error.
@@ -168,8 +163,6 @@ def run(
         The arithmetic that computes and writes numbers.
     dos : bool, default True
         True if a disk system handles lines that begin with control-D.
-    slot : int, default 0
-        The digit of line 190: 1 is the printer, whose output is part of the printout.
     after_line : callable, optional
         Called after every BASIC line with its number and the variables.
 
@@ -181,7 +174,7 @@ def run(
     Raises
     ------
     UserError
-        For an unknown arithmetic, a wrong slot, or a scene that cannot be typed into the program
+        For an unknown arithmetic, or a scene that cannot be typed into the program
         (`Scene.check_typed`).
 
     Examples
@@ -189,14 +182,12 @@ def run(
     >>> impact88.run(impact88.sample(1)).page.splitlines()[-3]
     ' WA= -1.745 WB= -.8202'
     """
-    if slot not in range(8):
-        raise UserError(f"slot {slot!r} is none of an Apple's; expected 0 to 7")
     scene = scene if isinstance(scene, Scene) else Scene(scene)
     scene.check_typed()
     characters: list[str] = []
     replies = iter(scene.keyboard())
     console = Console(lambda: next(replies, None), characters.append, dos=dos)
-    record = start(scene, console, arithmetic, str(slot), after_line)
+    record = start(scene, console, arithmetic, after_line)
     return record._replace(printout="".join(characters))
 
 
@@ -211,18 +202,18 @@ def _record_value(value: Any) -> Any:
 
 
 @cache
-def _comments() -> list[tuple[int, int, str]]:
-    """Return line of `listing`, line of BASIC and its statements, for each comment with one."""
-    rows = enumerate(packaged_text("impact88.program", "listing.py").splitlines(), 1)
-    matches = ((n, re.match(r" +# (\d+) (.*)", row)) for n, row in rows)
-    return [(n, int(match[1]), match[2]) for n, match in matches if match]
+def _lines() -> list[tuple[int, str]]:
+    """Return, for each line of `listing`, the BASIC line that it translates and its statements."""
+    lines = [(0, "")]
+    for row in packaged_text("impact88.program", "listing.py").splitlines():
+        comment = re.match(r" +# (\d+) (.*)", row)
+        lines.append((int(comment[1]), comment[2]) if comment else lines[-1])
+    return lines
 
 
 def basic_line(python_line: int) -> int:
     """Return the BASIC line that a line of ``listing.py`` translates, 0 above the first."""
-    comments = _comments()
-    index = bisect([n for n, _, _ in comments], python_line)
-    return comments[index - 1][1] if index else 0
+    return _lines()[python_line][0]
 
 
 def _new_variable(line: int, names: Mapping[str, Any], unset: object, replies_read: int) -> str:
@@ -230,13 +221,11 @@ def _new_variable(line: int, names: Mapping[str, Any], unset: object, replies_re
 
     Applesoft creates a variable before it evaluates the formula, so it is the first one assigned in
     the line that has no value yet. ``replies_read``: the variables that INPUT had reached."""
-    statements = next(text for _, number, text in _comments() if number == line)
-    names_assigned = [
-        next(filter(None, m)) for m in _ASSIGNED.findall(statements.partition(" REM")[0])
-    ]
+    statements = dict(_lines())[line].partition(" REM")[0]
+    assigned = ["".join(names) for names in _ASSIGNED.findall(statements)]
     if line in REPLY_LINES:
-        names_assigned = names_assigned[:replies_read]
-    return next((name for name in names_assigned if names[name] is unset), "")
+        assigned = assigned[:replies_read]
+    return next((name for name in assigned if names[name] is unset), "")
 
 
 def _failure(traceback: TracebackType | None) -> tuple[int, Mapping[str, Any]]:
@@ -271,14 +260,15 @@ def _stopping(after_line: AfterLine, arithmetic: Arithmetic) -> Iterator[None]:
         nonlocal current
         if frame.f_code not in _TRANSLATIONS:
             return None
-        is_end = event == "return" and frame.f_code is _CODES["main"]
-        line = basic_line(frame.f_lineno) if event == "line" else 0 if is_end else current
+        line = basic_line(frame.f_lineno) if event == "line" else current
+        if event == "return" and frame.f_code is _CODES["main"]:
+            line = 0
         if line != current:
             finished_line, current = current, line
-            outer: FrameType | None = frame
-            while outer is not None and outer.f_code is not _LISTING:
+            outer: Any = frame
+            while outer.f_code is not _LISTING:
                 outer = outer.f_back
-            if finished_line and outer is not None:
+            if finished_line:
                 after_line(finished_line, _variables(outer.f_locals, arithmetic.unset))
         return trace
 

@@ -16,7 +16,7 @@ from ..names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Self
+    from typing import Any, Self
 
 LISTING = "impact.bas"
 DATA_LINES = (280, 290, 310)
@@ -59,12 +59,7 @@ class Scene(Mapping[str, str]):
     def __init__(
         self, values: Mapping[str, str], title: str | None = None, source: str = "scene"
     ) -> None:
-        if not isinstance(values, Mapping):
-            raise UserError(f"{values!r:.60} is not a mapping of names to texts", source)
-        check_names(values, SCENE, "value of a scene", source)
-        if absent := [name for name in SCENE if name not in values and name != "M"]:
-            raise UserError(missing(absent), source)
-        self._values = {name: values.get(name, DEFAULT_M) for name in SCENE}
+        self._values: dict[str, str] = complete(values, source)
         self.title = title
         self.source = source
         for name, text in self._values.items():
@@ -165,11 +160,22 @@ class Scene(Mapping[str, str]):
                 )
 
 
+def complete(values: Mapping[str, Any], source: str | None = None) -> dict[str, Any]:
+    """Return the values of a scene in the table's order, M = 6 where it is not given. Raises
+    UserError for missing and unknown names."""
+    if not isinstance(values, Mapping):
+        raise UserError(f"{values!r:.60} is not a mapping of names to texts", source)
+    check_names(values, SCENE, "value of a scene", source)
+    if absent := [name for name in SCENE if name not in values and name != "M"]:
+        raise UserError(missing(absent), source)
+    return {name: values.get(name, DEFAULT_M) for name in SCENE}
+
+
 def check_number(name: str, text: object, source: str) -> None:
     """Raise UserError unless INPUT reads the whole of a text as one number."""
     if not (isinstance(text, str) and text.isascii() and is_number(text)):
         raise UserError(
-            f"{name} = {text!r:.60} is not a number as typed; expected one such as 1.5 "
+            f"{name} = {text!r:.60} is not a number as typed; expected a text such as '1.5' "
             f"({SCENE[name].meaning})",
             source,
         )
@@ -177,12 +183,8 @@ def check_number(name: str, text: object, source: str) -> None:
 
 def published_data() -> dict[str, str]:
     """Return the values in lines 280, 290, 310 and 350 of the published listing."""
-    data: dict[str, str] = {}
-    for line in packaged_text("impact88.legacy", LISTING).splitlines():
-        number, _, statements = line.partition(" ")
-        if int(number) in (*DATA_LINES, M_LINE):
-            assignments = statements.partition(": REM")[0].split(":")
-            data |= dict(statement.split(" = ") for statement in assignments)
+    listing = packaged_text("impact88.legacy", LISTING)
+    data = dict(re.findall(r"(?m)(?:^\d+ |:)([A-Z]+) = (-?[0-9.]+)(?=:|$)", listing))
     return {name: data[name] for name in SCENE if name in data}
 
 

@@ -7,14 +7,13 @@ from functools import partial
 
 import captures
 import pytest
-from emulation import FUZZ, PROGRAMS
+from emulation import FUZZ, PROGRAMS, run_emulated
 
 from impact88.apple.captured import memory_contents, session
 from impact88.apple.emulator.emulator import Applesoft
 from impact88.apple.emulator.machine import Machine
 from impact88.apple.emulator.programfile import read_program
 from impact88.apple.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
-from impact88.program import copies
 from impact88.program.scene import Scene
 
 SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
@@ -87,7 +86,7 @@ def test_captured_random_program(case):
 
 @pytest.mark.parametrize("case", SCENES, ids=[case["id"] for case in SCENES])
 def test_captured_scene(case):
-    run = copies.run_emulated(case["scene"], dos=False)
+    run = run_emulated(Scene(case["scene"]), dos=False)
     assert run.printout == case["printout"]
     assert memory_contents(run.reals, run.A) == memory_contents(case["reals"], case["A"])
 
@@ -101,7 +100,7 @@ def test_the_scene_types_what_the_captures_typed():
 
 def test_a_changed_bit_in_a_capture_is_seen():
     case = SCENES[0]
-    run = copies.run_emulated(case["scene"], dos=False)
+    run = run_emulated(Scene(case["scene"]), dos=False)
     name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
     changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
     assert memory_contents(run.reals, run.A) != memory_contents(changed, case["A"])

@@ -71,7 +71,9 @@ def test_one_bit_in_the_port_is_caught(monkeypatch, n):
             left -= 1
         return Real((e, m ^ 0x100, s)) if e and not left else Real((e, m, s))
 
-    monkeypatch.setattr(arithmetics.APPLESOFT, "LET", spoiled)
+    monkeypatch.setitem(
+        arithmetics.ARITHMETICS, "applesoft", arithmetics.APPLESOFT._replace(LET=spoiled)
+    )
     assert first_difference(sample(1)) is not None
     assert left <= 0
 
