@@ -601,7 +601,7 @@ static uint64_t packed(real x)
 }
 
 /* Return the digest of the listing's steps for which this file was compiled. */
-EXPORT const char *applesoft_listing(void) { return LISTING; }
+EXPORT const char *applesoft_digest(void) { return LISTING; }
 
 /* Run a program on `count` scenes. text: for each input the texts of all scenes, each ended by a
    newline, or one text for all where `single`. row: the results of each scene, as `row_type` in

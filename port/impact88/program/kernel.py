@@ -115,7 +115,7 @@ def listing() -> Program:
 
 @cache
 def _library() -> Any:
-    return library.loaded("applesoft_listing", digest(listing().steps))
+    return library.loaded("applesoft_digest", digest(listing().steps))
 
 
 def compiled_library() -> Any:
