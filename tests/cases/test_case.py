@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import impact88
-from impact88.cases import TEMPLATES, Amount, Case, View, template
+from impact88.cases import TEMPLATES, Case, View, template
 from impact88.errors import UserError
 
 REAR_END = """
@@ -38,21 +38,23 @@ def refusal(text: str) -> str:
         ),
         ('MA = 1\n\nUX = "25 lb"', "crash.toml, line 3: UX = '25 lb': lb is not a unit"),
         ("MA = .9", "a number with a digit first (0.9)"),
-        ("MA = 1\nMA = 2", "line 2 has MA again"),
-        ("MA = true", "crash.toml, line 1: MA is a truth value; expected a number or a text"),
-        ("MA = [1]", "a list"),
-        ("[MA]\nvalues = 1", "crash.toml, line 1: MA is a table"),
+        ("MA = 1\nMA = 2", "and MA once"),
+        ("MA = true", "crash.toml, line 1: MA = True: expected a number or a text"),
+        ("MA = [1]", "MA = [1]: expected"),
+        ("[MA]\nvalues = 1", "crash.toml, line 1: MA = {'values': 1}: expected"),
         ("x=" + "[" * 1500, "one NAME = VALUE a line"),
         ("x=" + "9" * 3000, "line 1: is longer than 2,000 characters"),
         ('units = "imperial"', "units = 'imperial'; expected us, chapter, metric, si"),
         ('MA = "3 lb"\nMB = 4', "line 2: MB = 4 has no unit, and other values have"),
         ('MA = "3 lb"\nMB = "4 kg"', "units of two systems"),
-        ("CAF = 3", "CAF is given alone; expected CAF and CAL"),
-        ("CAF = 3\nCAL = 4\nPA = 3", "PA and CAF are both given"),
-        ('UX_source = "EDR"', "UX_source is given, and UX is not"),
+        ("CAF = 3", "CAF is given; expected CAF and CAL, or DA and PA"),
+        ("CAF = 3\nCAL = 4\nPA = 3", "expected CAF and CAL, or DA and PA in their place"),
+        ('UXX_source = "EDR"', "'UXX' is not an entry of a scene; did you mean UX?"),
+        ("SAF = -30", "SAF = '-30': a speed is not negative; expected HAF turned by 180"),
+        ('SA = "skid 60 ft"', "expected distance, unit and friction, such as skid 60 ft at 0.7"),
         ('IA = "estimate"', "IA = estimate needs MA"),
-        ("LA = 15", "LA is given alone; expected LA and BA"),
-        ('MA = 90\nIA = "estimate"', 'needs units = "us"'),
+        ('MA = 9\nLA = 15\nIA = "estimate"', "needs LA and BA, or none of them"),
+        ('MA = 90\nIA = "estimate"', 'with units = "us"'),
     ],
 )
 def test_refused(text: str, message: str) -> None:
@@ -78,7 +80,7 @@ def test_options_name_the_view_of_a_file_that_names_none() -> None:
     assert Case.loads('units = "si"\n' + text, units="us").view == View("si")
     assert Case.loads('axes = "listing"\n' + text, axes="sae").view == View()
     assert Case.loads('UX = "30 km/h"\nUY = "1 m/s"\nMA = "900 kg"').view == View("metric")
-    assert Case.loads('UX = "30 ft/s"\nMA = "90 slug"').view == View("chapter")
+    assert Case.loads('UX = "30 ft/s"\nMA = "90 slug"').view == View("us")
     assert Case.loads('TA = "0.5 rad"').view == View()
 
 
@@ -100,7 +102,6 @@ def test_with_is_the_edited_file() -> None:
         case.with_({"UX": "much"}, "--set")
     with pytest.raises(UserError, match="MB = '\\+- 2' is not an amount"):
         case.with_(MB="+- 2")
-    assert Case.of({"MA": 3}).with_(MA=Amount(5, 4, 6, "uniform")).entries["MA"].low == 4
 
 
 @pytest.mark.parametrize("number", [1, 2, 3])
@@ -124,7 +125,7 @@ def test_estimate_is_for_passenger_cars() -> None:
             of(weight)
     case = of("800", LA="10", BA="5")
     assert case.entries["IA"].value == float(f"{800 / 32.17405 * 125 / 12:.4g}")
-    assert case.estimated == ("IA",)
+    assert case.derived == ("IA",)
     assert "a uniform rectangle" in case.remarks[0]
     amount = of("3000").with_(IA="+- 20 %").entries["IA"]
     assert (amount.low, amount.high) == (1507.2, 2260.8)
@@ -132,14 +133,14 @@ def test_estimate_is_for_passenger_cars() -> None:
 
 def test_course_and_contact_point() -> None:
     case = Case.of({"UX": 3, "UY": 3, "TA": "course", "TB": "course", "VX": 0, "VY": 0})
-    assert case.entries["TA"].value == -135
+    assert case.texts["TA"] == "-135"
     assert math.isnan(case.entries["TB"].value)
     assert "TB" not in case.texts
     ranged = Case.of({"UX": "3 +- 1", "UY": 3, "TA": "course"})
     assert math.isnan(ranged.entries["TA"].value)
     assert ranged.texts["TA"] == "-135"
     polar = Case.of({"CAF": 3, "CAL": -4})
-    assert (polar.entries["DA"].value, polar.texts["PA"]) == (5, "-53.13010235415598")
+    assert (polar.texts["DA"], polar.texts["PA"]) == ("5", "-53.13010235415598")
     assert Case.of({"CAF": "3 +- 1", "CAL": 4}).entries["CAF"].low == 2
     assert Case.of({"CAF": "3 +- 1", "CAL": 4}).texts["DA"] == "5"
 
@@ -178,7 +179,6 @@ def test_friction_as_a_share_of_the_critical() -> None:
     del scene["GA"]
     without = Case.of({**scene, "MU": "85 %"})
     assert "MU" not in without.texts
-    assert any("MU = 85 % needs GA" in remark for remark in without.remarks)
 
 
 @pytest.mark.parametrize(
@@ -189,8 +189,8 @@ def test_friction_as_a_share_of_the_critical() -> None:
         ({"UX": "501 km/h"}, "no vehicle is as fast"),
         ({"DA": "15.1 m"}, "more than 15 m"),
         ({"EM": "0"}, "no moment is EM = 1"),
-        ({"TB": "46"}, "B moves 46° off the way it faces"),
-        ({"IA": "100"}, "times what IA"),
+        ({"TB": "46"}, "TB = 46: B moves more than 45° off the way it faces"),
+        ({"IA": "100"}, "IA = 100: far from what IA"),
     ],
 )
 def test_plausibility(changes: dict[str, str], remark: str) -> None:
@@ -219,6 +219,3 @@ def test_files_are_written_back() -> None:
     text = 'title = "a \\"b\\" \\\\ c"\nunits = "us"\nUX = "30 +- 2"\nUX_source = "EDR"\nSA = 31'
     case = Case.loads(text)
     assert Case.loads(case.toml()) == case
-    share = Amount(0.5, 0.25, 0.75, "uniform", share=True)
-    amounts = Case.of({"UX": Amount(5, 4, 6, "uniform"), "MA": 3.25, "MU": share})
-    assert Case.loads(amounts.toml()).entries == amounts.entries

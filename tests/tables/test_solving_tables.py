@@ -28,10 +28,10 @@ def table(columns: dict[str, list[object]], **options: bool) -> Table:
 
 
 def solved(columns: dict[str, list[object]], results: str, **options: object):
-    """Return results by heading, and complaints."""
+    """Return results by heading, and bad rows."""
     solver = Solver(table(columns), results.split(), **options)
-    out, bad, _ = solver.solve(Block(columns, range(1, 1 + len(next(iter(columns.values()))))))
-    return out, bad, solver
+    out = solver.solve(Block(columns, range(1, 1 + len(next(iter(columns.values()))))))
+    return out, solver.solved.listed, solver
 
 
 def scene(count: int = 1, **columns: list[object]) -> dict[str, list[object]]:
@@ -57,8 +57,8 @@ def _units(name: str) -> str:
 def test_headings_name_the_system() -> None:
     columns = {f"{n.lower()} ({_units(n)})" if _units(n) else n: c for n, c in scene().items()}
     out, _, solver = solved(columns, "VAX KI")
-    assert solver.view.units == "chapter"
-    assert list(out)[-2:] == ["VAX [ft/s]", "KI [ft-lb]"]
+    assert solver.view.units == "us"
+    assert list(out)[-2:] == ["VAX [mph]", "KI [ft-lb]"]
     mixed = {"UX [mph]" if n == "UX" else n: c for n, c in scene().items()}
     with pytest.raises(UserError, match=r"expected DA \[ft\], or --units us"):
         solved(mixed, "VAX")
@@ -67,7 +67,9 @@ def test_headings_name_the_system() -> None:
     with pytest.raises(UserError, match=r"^table: UX and ux are two columns of UX"):
         solved({**scene(), "ux": ["1"]}, "VAX")
     (bad,) = solved(scene(UX=["25 mph"]), "VAX")[1]
-    assert "'25 mph' has a unit; expected units, too" in bad.reason
+    assert bad.startswith("table, row 1: DA = 7.59 has no unit, and other values have; add one, or")
+    (bad,) = solved({n: [f"{c[0]} {_units(n)}"] for n, c in scene().items()}, "VAX")[1]
+    assert bad == "table, row 1: has units; expected them in the headings, or --units"
 
 
 @pytest.mark.parametrize(
@@ -76,10 +78,10 @@ def test_headings_name_the_system() -> None:
         ("UX", "much", "= 'much' is not an amount"),
         ("UX", None, "is empty; expected a number"),
         ("UX", "", "is empty; expected a number"),
-        ("UX", "3 .. 5", "is a range; expected one number"),
+        ("UX", "3 .. 5", "= '3 .. 5': expected one number"),
         ("UX", "1,234", "may be a decimal one"),
         ("UX", "1e999", "beyond the range of doubles"),
-        ("UX", "nan", "is empty"),
+        ("UX", "nan", "= 'nan' is not an amount"),
         ("UX", "1 0", "= '1 0' is not an amount"),
         ("UX", math.nan, "is empty"),
     ],
@@ -92,8 +94,9 @@ def test_bad_rows_do_not_stop_the_others(
     columns[name] = [SAMPLE[name], cell, SAMPLE[name]]
     out, bad, _ = solved(columns, "VAX STATUS" if arithmetic == "float64" else "VAX")
     good = solve(NUMBERS, "VAX")["VAX"]
-    assert [(row.row, reason in row.reason) for row in bad] == [(2, True)], bad
-    assert bad[0].column == name
+    assert len(bad) == 1
+    assert bad[0].startswith(f"table, row 2: {name} ")
+    assert reason in bad[0]
     assert out["VAX"][[0, 2]].tolist() == [good, good]
     assert math.isnan(out["VAX"][1])
     assert "STATUS" not in out or out["STATUS"][1] == Status.NOT_FINITE
@@ -104,9 +107,9 @@ def test_bad_rows_do_not_stop_the_others(
     [
         ({"MA": "0"}, "MA", "= 0 is not above 0"),
         ({"IB": "-3"}, "IB", "= -3 is not above 0"),
-        ({"M": "5"}, "M", "= 5 is neither 4 nor 6"),
-        ({"MA": "inf"}, "UX", "= -29.04 is not 0, and MA is infinite: a barrier is at rest"),
-        ({"MA": "inf", "MB": "inf", "UX": "0", "VX": "0", "VY": "0"}, "MB", "and so is MA or IA"),
+        ({"M": "5"}, "M", "= 5 is neither 6 nor 4 (point masses)"),
+        ({"MA": "inf"}, "UX", "= -29.04 is not 0, and MA is infinite: a barrier rests"),
+        ({"MA": "inf", "MB": "inf", "UX": "0", "VX": "0", "VY": "0"}, "MB", "= INF is infinite, and so is MA"),
     ],
 )
 def test_scenes_that_are_no_impact_are_bad_rows(
@@ -114,21 +117,21 @@ def test_scenes_that_are_no_impact_are_bad_rows(
 ) -> None:
     columns: dict[str, list[object]] = {n: [t, changes.get(n, t)] for n, t in SAMPLE.items()}
     out, bad, _ = solved(columns, "VAX KI")
-    assert [(row.row, row.column) for row in bad] == [(2, column)]
-    assert reason in bad[0].reason
+    assert bad == [f"table, row 2: {column} {reason}"]
     assert np.isnan(out["KI"]).tolist() == [False, True]
 
 
 def test_what_cannot_be_typed_is_a_bad_row() -> None:
-    for name, cell in (("UX", "0." + "1" * 80), ("MA", "inf")):
+    for name, cell, fault in (("UX", "0." + "1" * 80, "longer"), ("MA", "inf", "be typed")):
         columns = {**scene(1), name: [cell]}
-        assert "cannot be typed" in solved(columns, "KI", arithmetic="applesoft")[1][0].reason
+        assert fault in solved(columns, "KI", arithmetic="applesoft")[1][0]
     points = {**scene(1, MA=["inf"], UX=["0"]), "M": ["4"]}
-    assert "cannot be typed" in solved(points, "KI", arithmetic="applesoft")[1][0].reason
+    assert "cannot be typed" in solved(points, "KI", arithmetic="applesoft")[1][0]
     for name, arithmetic in product(("EM", "E", "WA"), ("float64", "applesoft")):
         mixed = scene(2, M=["4", "6"])
         del mixed[name]  # a row of 6 equations needs it
-        assert [row.row for row in solved(mixed, "KI XAF", arithmetic=arithmetic)[1]] == [2]
+        bad = solved(mixed, "KI XAF", arithmetic=arithmetic)[1]
+        assert bad == [f"table, row 2: {name} is empty; expected a number"]
 
 
 def test_applesoft_has_the_bits_of_replay_and_reports_errors() -> None:
@@ -140,7 +143,7 @@ def test_applesoft_has_the_bits_of_replay_and_reports_errors() -> None:
     assert out["ERROR"][1] == "?OVERFLOW ERROR IN 320"
     assert out["LINE"][1] > 0
     assert (out["ERROR"][2], out["LINE"][2]) == ("", 0)
-    assert [row.row for row in bad] == [3]
+    assert [text[:14] for text in bad] == ["table, row 3: "]
     with pytest.raises(UserError, match="'COND' is not a result of --arithmetic applesoft"):
         solved(columns, "COND", arithmetic="applesoft")
 
@@ -176,7 +179,7 @@ def test_estimates_courses_and_shares_are_those_of_each_row() -> None:
         del columns[name]
     case = Case.of({"units": "us", "IA": "estimate", "MA": "3000", "TA": "course", "MU": "85 %"})
     out, bad, _ = solved(columns, "VAX MUP MUC", case=case)
-    assert [(row.row, row.column) for row in bad] == [(3, "IA")]
+    assert [text[:17] for text in bad] == ["table, row 3: IA "]
     for at in (0, 1):
         one = Case.of({**{n: c[at] for n, c in columns.items()}, "units": "us"})
         one = one.with_(IA="estimate", TA="course", MU="85 %")
@@ -194,7 +197,7 @@ def test_point_masses_leave_out_what_needs_the_plane() -> None:
     out, bad, solver = solved(columns, "KI PN")
     assert list(out)[-1] == "KI"
     assert solver.remarks() == ["PN needs E MU GA"]
-    mixed = scene(2, M=["4", ""], DA=["1e999", "7.59"])
+    mixed = scene(2, M=["4", ""], DA=["", "7.59"])
     for arithmetic in ("float64", "applesoft"):
         out, bad, _ = solved(mixed, "VAX", arithmetic=arithmetic)
         assert not bad
@@ -249,19 +252,15 @@ def test_sweeps(tmp_path: Path) -> None:
             sweep_table(case, {"MU": text})
 
 
-def test_bad_rows_go_to_a_file(tmp_path: Path) -> None:
+def test_bad_rows_are_listed_and_counted(tmp_path: Path) -> None:
     names = ",".join(SAMPLE)
     rows = [",".join({**SAMPLE, "UX": "x" if at % 2 else "1"}.values()) for at in range(60)]
     source = tmp_path / "in.csv"
     source.write_text("\n".join([names, *rows]))
-    errors = tmp_path / "errors.csv"
-    outcome = solve_table(str(source), str(tmp_path / "out.csv"), ["VAX"], errors=str(errors))
+    outcome = solve_table(str(source), str(tmp_path / "out.csv"), ["VAX"])
     assert (outcome.rows, outcome.bad, len(outcome.listed)) == (60, 30, 20)
-    lines = outcome.messages("in.csv")
-    assert lines[0].startswith("in.csv, line 3: UX = 'x' is not an amount")
-    assert "30 rows could not be used" in lines[-1]
-    with errors.open() as file:
-        complaints = list(csv.reader(file))
-    assert (len(complaints), complaints[1][:2]) == (31, ["3", "UX"])
+    lines = outcome.messages()
+    assert "in.csv, line 3: UX = 'x' is not an amount" in lines[0]
+    assert lines[-1] == "30 rows could not be used, these first"
     with (tmp_path / "out.csv").open() as file:
         assert [row["VAX"] == "" for row in csv.DictReader(file)] == [False, True] * 30

@@ -17,23 +17,24 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
-from typing import Any, Literal, NamedTuple
+from functools import lru_cache
+from typing import Literal, NamedTuple
 
 from ..decimals import exact, is_number, negated, to_double, to_text
 from ..errors import UserError, quoted
-from ..names import INERTIA, LENGTH, MASS, NUMBER, PERCENT, PIVOT, quantity
+from ..names import INERTIA, LENGTH, MASS, PERCENT, PIVOT, quantity
 from .units import DIMENSIONS, GRAVITY, PLAIN, View, system_using, unit_of
 
 Kind = Literal["exact", "uniform", "triangular", "normal"]
-Ends = tuple[Fraction | float, Fraction | float]
 
 TOLERANCE = "+-"
 """Mark of a half width; ± and +/- are read as this."""
 SKIDDING = ("SA", "SB", "SAF", "SBF")
-MAX_LENGTH = 200  # characters of an entry; bounds the time to read it
+"""Speeds: sizes, whose directions are HA HB HAF HBF."""
+MAX_LENGTH = 70  # characters of an entry; three and their commas fit the 239 that INPUT keeps
 EXPECTED = (
     "expected such as 25, -25 mph, 6 ft 6 in, 28 .. 32 mph, 30 +- 2 mph, 30 +- 5 %, "
     "normal 30 1.5, triangular 28 30 33"
@@ -167,67 +168,54 @@ class Amount:
         if factor == 1 and not offset:
             return self
         value = exact(self.text) if self.text else self.value
-        return _image(self, value, (self.low, self.high), self.sd, factor, offset)
+        points = (self.low, value, self.high) if self.varies else (value,) * 3
+        return _image(self.kind, points, self.sd, self.text, self.share, (factor, offset))
 
 
 def _image(
-    like: Amount,
-    value: Fraction | float,
-    ends: Ends,
+    kind: Kind,
+    points: Sequence[Fraction | float],
     sd: Fraction | float,
-    factor: Fraction,
-    offset: Fraction,
+    text: str,
+    share: bool,
+    affine_map: tuple[Fraction, Fraction],
 ) -> Amount:
-    """Return the amount of the kind and digits of ``like`` whose numbers are the images of these.
-
-    Raises OverflowError beyond the range of doubles."""
-
-    def image(x: Fraction | float) -> float:
-        if isinstance(x, float) and not math.isfinite(x):
-            return x * (1 if factor > 0 else -1)
-        return float(offset + factor * Fraction(x))
-
-    nominal, text = image(value), ""
-    if offset == 0 and abs(factor) == 1 and like.text:
-        text = negated(like.text) if factor < 0 and nominal else like.text
-    if like.kind == "exact":
-        return Amount(nominal, nominal, nominal, text=text, share=like.share)
-    low, high = map(image, ends if factor > 0 else ends[::-1])
+    """Return the amount with the images of lower limit, value and upper limit under a map; the
+    digits stay where no more than the sign changes. Raises OverflowError beyond the range of
+    doubles."""
+    factor, offset = affine_map
+    first, value, last = (
+        float(offset + factor * Fraction(x)) if math.isfinite(x) else math.copysign(x, x * factor)
+        for x in points
+    )
+    if offset or abs(factor) != 1:
+        text = ""
+    elif text and factor < 0 and value:
+        text = negated(text)
+    kind = kind if first != last else "exact"
     spread = float(abs(factor) * Fraction(sd))
-    return Amount(nominal, low, high, like.kind, spread, text, like.share)
+    return Amount(value, min(first, last), max(first, last), kind, spread, text, share)
 
 
 # -- the notation
 
 _DIGITS = r"(?:\d{1,3}(?:,\d{3})+(?!\d)(?:\.\d*)?|\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_UNIT = r"[a-zA-Z°%](?:[a-zA-Z°/·*.^²-]|[23](?!\d)| (?=[a-zA-Z/·*]))*"
-_PART = re.compile(rf"([-+]?) ?({_DIGITS}) ?({_UNIT})? ?")
+_NUMBER = re.compile(rf"([-+]? ?{_DIGITS}) ?([a-zA-Z°%].*)?")
+_FEET = re.compile(rf"([-+]?) ?({_DIGITS}) ?(?:ft|foot|feet) ?({_DIGITS}) ?(?:in|inch|inches)")
 _SKID = re.compile(r"skid (.+) at (.+)")
 _SPELLINGS = str.maketrans({"−": "-", "–": "-", "⋅": "·", "×": "*", "º": "°", "±": TOLERANCE})
-_DECIMAL_COMMA = re.compile(r"\d{1,3},\d{3}")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d{1,3},\d{3}")
 _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
 """Kinds that are named, with how many numbers follow."""
 
 
 class Number(NamedTuple):
     """A number as written: its exact value, the symbol of its unit ("" without), and its digits
-    ("" of one in several units, such as feet and inches)."""
+    ("" of feet and inches)."""
 
     value: Fraction
     unit: str
     digits: str
-
-
-class Notation(NamedTuple):
-    """An amount as written, with exact numbers in one ``unit`` ("" without); otherwise as
-    `Amount`."""
-
-    unit: str
-    kind: Kind
-    value: Fraction | float
-    ends: Ends
-    sd: Fraction = Fraction(0)
-    text: str = ""
 
 
 def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
@@ -248,7 +236,7 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
     ------
     UserError
         For any other text, a unit that does not measure the quantity, a comma that may be a decimal
-        one, limits in the wrong order, and numbers beyond the range of doubles.
+        one, limits in the wrong order, a negative speed, and numbers beyond the range of doubles.
 
     Examples
     --------
@@ -258,22 +246,24 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
     -183.71
     """
     words = normalize(text)
-    if match := _SKID.fullmatch(words):
-        return _skid(name, match[1], match[2], view)
-    if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
-        return Amount.exactly(math.inf)  # a barrier
-    notation = parse(name, words, unit or view.unit(name))
-    if notation.unit and not view.units and quantity(name).unit in DIMENSIONS:
-        raise UserError(f"{name} = {quoted(text)} has a unit; expected units, too, such as us")
-    factor, offset = view.map(name, notation.unit or unit)
-    if name == "MUP" and notation.value == PIVOT:
-        factor = abs(factor)  # the pivot's mark has no direction
-    share = name == "MU" and notation.unit == "%"
-    like = Amount(0.0, 0.0, 0.0, notation.kind, text=notation.text, share=share)
+    entry = f"{name} = {quoted(words)}"
+    if len(words) > MAX_LENGTH:
+        raise UserError(f"{entry} is longer than {MAX_LENGTH} characters; expected an amount")
     try:
-        return _image(like, notation.value, notation.ends, notation.sd, factor, offset)
+        if words.startswith("skid"):
+            return _skid(name, words, view)
+        if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
+            return Amount.exactly(math.inf)  # a barrier
+        amount = _amount(name, *parse(quantity(name).unit, words), view, unit)
+    except UserError as error:
+        raise UserError(f"{entry}: {error}") from None
     except OverflowError:
-        raise UserError(f"{name} = {quoted(text)} is beyond the range of doubles") from None
+        raise UserError(f"{entry} is beyond the range of doubles") from None
+    except ValueError:
+        raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
+    if name in SKIDDING and amount.value < 0:
+        raise UserError(f"{entry}: a speed is not negative; expected H{name[1:]} turned by 180")
+    return amount
 
 
 def normalize(text: str) -> str:
@@ -282,169 +272,133 @@ def normalize(text: str) -> str:
 
 
 def units_in(name: str, text: str) -> list[tuple[str, str]]:
-    """Return rule and symbol of the unit of an amount, none if it is a bare number. Raises
-    UserError for a text that is no amount."""
+    """Return rule and symbol of the units in an amount, none if it is a bare number or no
+    amount."""
     words = normalize(text)
     if match := _SKID.fullmatch(words):
         return units_in("DA", match[1])
-    unit = parse(name, words, None).unit
-    return [(quantity(name).unit, unit)] if unit else []
-
-
-def parse(name: str, words: str, usual: str | None) -> Notation:
-    """Return the notation of a `normalize`d text.
-
-    ``usual``: the unit of a bare number, which decides what its comma means; None takes any comma.
-    Raises UserError."""
-    entry = f"{name} = {quoted(words)}"
-    if len(words) > MAX_LENGTH:
-        raise UserError(f"{entry} is longer than {MAX_LENGTH} characters; expected an amount")
     rule = quantity(name).unit
-    try:
-        kind, numbers = _numbers(rule, words)
-        unit, values = _in_one_unit(rule, numbers)
-        if usual is not None:
-            _check_commas(rule, numbers, unit or usual)
-    except UserError as error:
-        raise UserError(f"{entry}: {error}") from None
-    except ValueError:
-        raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
-    if name in ("MUP", "RR0") and unit:
-        raise UserError(f"{entry}: expected a number without %; MU takes shares of the critical")
-    nominal = numbers[1 if kind == "triangular" else 0]
-    text = "" if kind == "uniform" else nominal.digits.replace(",", "")
-    notation = _notation(kind, values, unit, text)
-    low, high = notation.ends
-    if not low <= notation.value <= high or notation.sd < 0:
-        raise UserError(f"{entry}: expected the lower limit first, and no negative tolerance")
-    return notation._replace(kind="exact") if low == high else notation
+    with suppress(ValueError, OverflowError):  # `read` refuses it
+        return [(rule, number.unit) for number in parse(rule, words)[1] if number.unit]
+    return []
 
 
-def _notation(kind: Any, values: Sequence[Fraction], unit: str, text: str) -> Notation:
-    """Return the notation of the values of a kind of `_numbers`."""
-    first, last = values[0], values[-1]
-    if kind == "normal":
-        ends = (-math.inf, math.inf) if last else (first, first)
-        return Notation(unit, kind, first, ends, last, text)
-    if kind == "around":
-        return Notation(unit, "uniform", first, (first - last, first + last), text=text)
-    middle = values[1] if kind == "triangular" else (first + last) / 2
-    return Notation(unit, kind, middle, (first, last), text=text)
+@lru_cache(maxsize=4096)
+def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
+    """Return the kind of a `normalize`d amount, one of `Amount` or "around" for a half width, and
+    its numbers.
 
-
-def _numbers(rule: str, words: str) -> tuple[str, list[Number]]:
-    """Return the kind of an amount, one of `Amount` or "around" for a half width, and its numbers.
-
-    Raises ValueError for a text that is no amount, UserError for one refused for another reason."""
+    Raises ValueError for a text that is no amount, UserError for one refused for another reason,
+    OverflowError for numbers beyond the range of doubles."""
     kind, _, remainder = words.partition(" ")
     if kind in _COUNTS:
-        numbers = _parts(rule, remainder)
+        numbers = tuple(_number(rule, part) for part in re.split(r" (?=[-+]?\.?\d)", remainder))
         if len(numbers) != _COUNTS[kind]:
             raise ValueError(words)
         return kind, numbers
-    first, mark, second = (part.strip() for part in words.partition(TOLERANCE))
+    first, mark, second = words.partition(TOLERANCE)
     if mark and second.endswith("%"):
         if rule == PERCENT or "%" in first:
             raise UserError("a percentage of a percentage; expected such as '37 +- 2'")
-        middle, share = _number(rule, first), _number(NUMBER, second.rstrip("% "))
-        return "around", [
-            middle,
-            share._replace(value=abs(middle.value) * share.value / 100, unit=middle.unit),
-        ]
+        middle, share = _number(rule, first), _number(PERCENT, second).value / 100
+        return "around", (middle, middle._replace(value=abs(middle.value) * share))
     if mark:
-        return "around", [_number(rule, first), _number(rule, second)]
-    first, mark, second = (part.strip() for part in words.partition(".."))
+        return "around", (_number(rule, first), _number(rule, second))
+    first, mark, second = words.partition("..")
     if mark and "..." not in words:
-        return "uniform", [_number(rule, first), _number(rule, second)]
+        return "uniform", (_number(rule, first), _number(rule, second))
+    return "exact", (_number(rule, words),)
+
+
+def _number(rule: str, text: str) -> Number:
+    """Return the one number of a text. Raises ValueError."""
+    words = text.strip()
     if is_number(words) and not re.search(r"\d \d", words):  # as INPUT takes it: "." is 0
-        return "exact", [Number(_fraction(words), "", words.replace(" ", ""))]
-    return "exact", [_number(rule, words)]
+        return Number(_fraction(words), "", words.replace(" ", ""))
+    if rule == LENGTH and (match := _FEET.fullmatch(words)):
+        inches = 12 * _fraction(match[2]) + _fraction(match[3])
+        return Number(-inches if match[1] == "-" else inches, "in", "")
+    match = _NUMBER.fullmatch(words)
+    if match is None:
+        raise ValueError(words)
+    digits, symbol = match.groups(default="")
+    return Number(_fraction(digits), symbol and unit_of(rule, symbol).symbol, digits)
 
 
-def _parts(rule: str, words: str) -> list[Number]:
-    """Return the numbers of a text side by side. Raises ValueError."""
-    parts: list[Number] = []
-    place = 0
-    while place < len(words) or not parts:
-        match = _PART.match(words, place)
-        if match is None:
-            raise ValueError(words)
-        sign, digits, symbol = match.groups(default="")
-        unit = unit_of(rule, symbol).symbol if symbol else ""
-        parts.append(Number(_fraction(sign + digits), unit, sign + digits))
-        place = match.end()
-    return parts
+def _fraction(digits: str) -> Fraction:
+    """Return a number as written, exactly; 0 where it is 0 as a double. Raises OverflowError beyond
+    the range of doubles."""
+    plain = digits.replace(",", "")
+    value = to_double(plain)
+    if math.isinf(value):
+        raise OverflowError
+    return exact(plain) if value else Fraction(0)
 
 
-def _number(rule: str, words: str) -> Number:
-    """Return the one number of a text: a part, or parts of smaller and smaller units, of which none
-    but the first has a sign. Raises ValueError."""
-    first, *smaller = _parts(rule, words)
-    if not smaller:
-        return first
-    value = abs(first.value)
-    for larger, part in pairwise((first, *smaller)):
-        ratio = _ratio(rule, part.unit, larger.unit)
-        if not 0 < ratio < 1 or part.digits[0] in "+-":
-            raise ValueError(words)
-        value += part.value * _ratio(rule, part.unit, first.unit)
-    return Number(-value if first.digits[0] == "-" else value, first.unit, "")
-
-
-def _ratio(rule: str, unit: str, other: str) -> Fraction:
-    """Return the size of a unit in another one, 0 if there are not two, 1 for the same."""
-    if unit == other:
-        return Fraction(1)
-    return unit_of(rule, unit).size / unit_of(rule, other).size if unit and other else Fraction(0)
-
-
-def _in_one_unit(rule: str, numbers: Sequence[Number]) -> tuple[str, list[Fraction]]:
-    """Return the unit of the first number that has one, and the values in it. Raises UserError for
-    numbers without beside several units."""
+def _amount(name: str, kind: str, numbers: Sequence[Number], view: View, unit: str) -> Amount:
+    """Return an amount in base units. Raises UserError, and OverflowError beyond the range of
+    doubles."""
+    rule = quantity(name).unit
     units = [number.unit for number in numbers if number.unit]
     is_mixed = len({*units}) > 1 or not all(number.digits for number in numbers)
     if is_mixed and len(units) < len(numbers):
         raise UserError("expected a unit beside each number")
-    common = units[0] if units else ""
-    return common, [n.value * _ratio(rule, n.unit or common, common) for n in numbers]
+    if units and name in ("MUP", "RR0"):
+        raise UserError("expected a number without %; MU takes shares of the critical")
+    if units and not view.units and rule in DIMENSIONS:
+        raise UserError("has a unit; expected units, too, such as us")
+    common = units[0] if units else unit
+    for number in numbers:
+        _check_comma(rule, number.digits, number.unit or common or view.unit(name))
+    values = [
+        n.value * unit_of(rule, n.unit).size / unit_of(rule, common).size if is_mixed else n.value
+        for n in numbers
+    ]
+    first, middle, last = values[0], values[len(values) // 2], values[-1]
+    reach = math.inf if last else 0
+    shapes: dict[str, tuple[Kind, Sequence[Fraction | float]]] = {
+        "exact": ("exact", (first, first, first)),
+        "around": ("uniform", (first - last, first, first + last)),
+        "uniform": ("uniform", (first, (first + last) / 2, last)),
+        "triangular": ("triangular", (first, middle, last)),
+        "normal": ("normal", (first - reach, first, first + reach)),
+    }
+    distribution, points = shapes[kind]
+    sd = last if kind == "normal" else Fraction(0)
+    if [*points] != sorted(points) or sd < 0:
+        raise UserError("expected the lower limit first, and no negative tolerance")
+    text = numbers[1 if kind == "triangular" else 0].digits if kind != "uniform" else ""
+    factor, offset = view.map(name, common)
+    if name == "MUP" and first == PIVOT:
+        factor = abs(factor)  # the pivot's mark has no direction
+    text = re.sub("[, ]", "", text)
+    return _image(distribution, points, sd, text, name == "MU" and "%" in units, (factor, offset))
 
 
-def _check_commas(rule: str, numbers: Sequence[Number], unit: str) -> None:
+def _check_comma(rule: str, digits: str, unit: str) -> None:
     """Raise UserError for a comma that may be a decimal one: 1,234 is a thousand only with an
     American unit."""
     is_american = bool(unit) and unit_of(rule, unit).side == "us"
-    for number in numbers:
-        digits = number.digits.lstrip("+-")
-        if _DECIMAL_COMMA.fullmatch(digits) and (digits[0] == "0" or not is_american):
-            choices = f"{digits.replace(',', '')} or {digits.replace(',', '.')}"
-            raise UserError(f"the comma of {digits} may be a decimal one; expected {choices}")
+    if _DECIMAL_COMMA.fullmatch(digits) and (digits.lstrip("+-")[0] == "0" or not is_american):
+        choices = f"{digits.replace(',', '')} or {digits.replace(',', '.')}"
+        raise UserError(f"the comma of {digits} may be a decimal one; expected {choices}")
 
 
-def _fraction(digits: str) -> Fraction:
-    """Return a number as written, exactly; 0 where it is 0 as a double. Raises UserError beyond the
-    range of doubles."""
-    plain = digits.replace(",", "")
-    value = to_double(plain)
-    if math.isinf(value):
-        raise UserError(f"{digits} is beyond the range of doubles")
-    return exact(plain) if value else Fraction(0)
-
-
-def _skid(name: str, distance: str, friction: str, view: View) -> Amount:
+def _skid(name: str, words: str, view: View) -> Amount:
     """Return the speed at the start of a skid to rest, v = sqrt(2 mu g d).
 
     Distance and friction are independent. One that varies gives the speed its distribution; two
     give a normal within the limits of both, its standard deviation to first order."""
-    entry = f"{name} = skid {distance} at {friction}"
+    match = _SKID.fullmatch(words)
     if name not in SKIDDING:
-        raise UserError(f"{entry}: a skid is a speed; expected {', '.join(SKIDDING)}")
-    system = view.units or system_using(units_in("DA", distance))
-    if not system:
-        raise UserError(f"{entry} needs units; expected such as 'skid 62 ft at 0.7'")
-    parts = [read("DA", distance, View(system)), read("E", friction)]
+        raise UserError(f"a skid is a speed; expected {', '.join(SKIDDING)}")
+    system = view.units or system_using(units_in(name, words))
+    if match is None or not system:
+        raise UserError("expected distance, unit and friction, such as skid 60 ft at 0.7")
+    parts = [read("DA", match[1], View(system)), read("E", match[2])]
     low, high = zip(*(part.limits() for part in parts), strict=True)
     if min(low) <= 0:
-        raise UserError(f"{entry}: expected a distance and a friction above 0")
+        raise UserError("expected a distance and a friction above 0")
     gravity = float(GRAVITY / View(system).base_size(LENGTH))
     slow, value, fast = (
         math.sqrt(2 * gravity * d * mu) for d, mu in (low, [part.value for part in parts], high)

@@ -12,22 +12,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..decimals import to_text
 from ..errors import UserError
 from ..names import INERTIA, MASS
+from .amounts import Amount
 from .units import POUND, View, unit_of
 
+ESTIMATE = "estimate"
+SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
+"""Length and width of each vehicle: for an estimate of its inertia, and its outline in drawings."""
 MIN_WEIGHT = 1500  # lb; cars of the fitted sample lie between these two
 MAX_WEIGHT = 6000  # lb
 SLOPE = 1.03  # ft-s² for each lb, as published
 OFFSET = 1206.0  # lb-ft-s², as published
-
-
-def rectangle_inertia(mass: Any, length: float, width: float) -> Any:
-    """Return the yaw inertia of a uniform rectangle, m (L² + W²)/12; masses may be an array."""
-    return mass * (length**2 + width**2) / 12
 
 
 def weight(mass: Any, view: View) -> Any:
@@ -35,63 +35,59 @@ def weight(mass: Any, view: View) -> Any:
     return mass * float(view.base_size(MASS) / POUND)
 
 
-def inertia_of_weight(pounds: Any, view: View) -> Any:
-    """Return the yaw inertia of a passenger car of a weight, in base units."""
-    size = unit_of(INERTIA, "lb-ft-s2").size / view.base_size(INERTIA)
-    return (SLOPE * pounds - OFFSET) * float(size)
-
-
 def is_car(pounds: Any) -> Any:
     """Return True for the weight of a passenger car."""
     return (pounds >= MIN_WEIGHT - 1e-6) & (pounds <= MAX_WEIGHT + 1e-6)  # 1,500 lb from kg
 
 
-def estimate(name: str, mass: float, sizes: Sequence[float], view: View) -> tuple[float, str]:
-    """Return an estimated yaw inertia of four digits, in base units, and its rule in words.
+def usual_inertia(mass: Any, sizes: Sequence[float], view: View) -> Any:
+    """Return the yaw inertia by the length and width of a vehicle, else by its weight, in base
+    units; masses may be an array."""
+    if sizes:
+        return mass * (sizes[0] ** 2 + sizes[1] ** 2) / 12
+    unit = float(unit_of(INERTIA, "lb-ft-s2").size / view.base_size(INERTIA))
+    return (SLOPE * weight(mass, view) - OFFSET) * unit
+
+
+def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str, str]:
+    """Return the digits of an estimated yaw inertia, four of them, in units of the view, and a
+    remark.
 
     Parameters
     ----------
     name : {"IA", "IB"}
         The inertia.
-    mass : float
-        In base units.
-    sizes : sequence of float
-        Length and width in base units, or nothing.
+    amounts : mapping of str to Amount
+        The mass, and the length and width if they are known.
     view : View
-        Its units are those of the words.
+        Its units are those of the result.
 
     Raises
     ------
     UserError
-        Without sizes, for the weight of no passenger car, and without units.
+        Without a mass; without length and width, for the weight of no passenger car, and without
+        units.
     """
     vehicle = name[1]
-    if not mass > 0:
-        raise UserError(f"{name} = estimate needs M{vehicle} above 0")
-    pounds = weight(mass, view)
-    if sizes:
-        value = rectangle_inertia(mass, sizes[0], sizes[1])
-        rule = (
-            f"M{vehicle} (L{vehicle}² + B{vehicle}²)/12, a uniform rectangle; "
-            "6 to 14 % high on seven passenger cars"
-        )
-        if view.units and not is_car(pounds):
-            rule += ", and this is none"
-    elif not view.units:
+    mass = amounts.get(f"M{vehicle}")
+    if mass is None or not mass.value > 0:
+        raise UserError(f"{name} = {ESTIMATE} needs M{vehicle} above 0")
+    pair, pounds = SIZES[vehicle], weight(mass.value, view)
+    sizes = [amounts[size].value for size in pair if size in amounts]
+    if len(sizes) == 1:
+        raise UserError(f"{name} = {ESTIMATE} needs {pair[0]} and {pair[1]}, or none of them")
+    if not sizes and not (view.units and is_car(pounds)):
         raise UserError(
-            f'{name} = estimate from the weight needs units = "us" (or metric, si, chapter); '
-            f"or give L{vehicle} and B{vehicle}"
+            f"{name} = {ESTIMATE} from the weight is for passenger cars of {MIN_WEIGHT:,} to "
+            f'{MAX_WEIGHT:,} lb, with units = "us" or another; expected {name}, or {pair[0]} and '
+            f"{pair[1]}"
         )
-    elif not is_car(pounds):
-        raise UserError(
-            f"{name} = estimate from the weight is for passenger cars of {MIN_WEIGHT:,} to "
-            f"{MAX_WEIGHT:,} lb, and M{vehicle} is {pounds:,.0f} lb; "
-            f"expected {name}, or L{vehicle} and B{vehicle}"
-        )
-    else:
-        value = inertia_of_weight(pounds, view)
-        rule = (
-            f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
-            "6 to 29 % high on seven of them"
-        )
-    return float(f"{value:.4g}"), rule
+    rule = (
+        f"M{vehicle} (L{vehicle}² + B{vehicle}²)/12, a uniform rectangle; "
+        "6 to 14 % high on seven passenger cars"
+        if sizes
+        else f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
+        "6 to 29 % high on seven of them"
+    )
+    value = float(f"{usual_inertia(mass.value, sizes, view):.4g}")
+    return to_text(value), f"{name} = {value:g} {view.unit(name)} is estimated: {rule}"

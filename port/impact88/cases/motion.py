@@ -3,11 +3,13 @@ own axes."""
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Mapping
 
 from ..decimals import to_text
 from ..errors import UserError
+from ..names import PIVOT
 from .amounts import Amount
 
 VECTORS = {
@@ -22,7 +24,8 @@ OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
 PARALLEL = 1e-9  # largest sine between directions along one line; rounding leaves 1e-16
 _ACROSS = ("PDOFA", "PDOFB", "DVAR", "DVBR", "PT")
 """Directions of the impulse: where one is known, the line is not taken for granted."""
-_COMPLETE = (("SA", "SB"), ("SAF", "SBF"), ("SA", "SAF"), ("SB", "SBF"))
+_ENOUGH = ("SA SB", "SAF SBF", "SA SAF SB", "SA SAF SBF", "SB SBF SA", "SB SBF SAF")
+"""Velocities that give the directions of all four by the momentum."""
 
 
 def exact_number(value: float) -> Amount:
@@ -45,10 +48,11 @@ def contact_point(entries: Mapping[str, Amount]) -> dict[str, Amount]:
     for vehicle, names in OWN_AXES.items():
         present = [name for name in names if name in entries]
         polar = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in entries]
-        if present and polar:
-            raise UserError(f"{polar[0]} and {present[0]} are both given; expected one pair")
-        if len(present) == 1:
-            raise UserError(f"{present[0]} is given alone; expected {names[0]} and {names[1]}")
+        if present and (polar or len(present) == 1):
+            raise UserError(
+                f"{present[0]} is given; expected {names[0]} and {names[1]}, or D{vehicle} and "
+                f"P{vehicle} in their place"
+            )
         if present and not any(entries[name].varies for name in names):
             forward, left = (result.pop(name).value for name in names)
             result[f"D{vehicle}"] = exact_number(math.hypot(forward, left))
@@ -56,31 +60,29 @@ def contact_point(entries: Mapping[str, Amount]) -> dict[str, Amount]:
     return result
 
 
-def courses(values: Mapping[str, float]) -> dict[str, float]:
+def courses(entries: Mapping[str, Amount]) -> dict[str, float]:
     """Return the vehicles' courses before the impact in degrees from the x axis, by "A" and "B",
-    where they are given and the vehicle moves."""
+    where they are known exactly and the vehicle moves."""
     result = {}
     for speed in ("SA", "SB"):
-        x, y, course = VECTORS[speed]
-        if x in values and y in values:
-            if values[x] or values[y]:
-                result[speed[1]] = math.degrees(math.atan2(values[y], values[x]))
-        elif course in values and values.get(speed, 1.0):
-            result[speed[1]] = values[course]
+        motion, (x, _, course) = velocity(entries, speed), VECTORS[speed]
+        if motion:
+            is_typed = course in entries and x not in entries
+            angle = entries[course].value if is_typed else math.degrees(cmath.phase(motion))
+            result[speed[1]] = angle
     return result
 
 
 def headings(entries: Mapping[str, Amount]) -> dict[str, Amount]:
     """Return the TA and TB of vehicles that face a course which is known exactly: B faces TB, and A
     faces TA + 180."""
-    exact = {name: amount.value for name, amount in entries.items() if not amount.varies}
     return {
         f"T{vehicle}": exact_number(math.remainder(course + 180 * (vehicle == "A"), 360))
-        for vehicle, course in courses(exact).items()
+        for vehicle, course in courses(entries).items()
     }
 
 
-def line_of_motion(entries: Mapping[str, Amount]) -> tuple[float | None, bool]:
+def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
     """Return the GA of a contact plane across the line along which both vehicles move.
 
     They do if the exactly known directions before (or after) the impact, or those of one vehicle
@@ -91,38 +93,61 @@ def line_of_motion(entries: Mapping[str, Amount]) -> tuple[float | None, bool]:
     -------
     float or None
         Degrees, from -180 to 180; A approaches against the normal. None for another motion.
-    bool
-        True if what is known implies that the impulse is along the line.
     """
-    vectors = {speed: _vector(entries, speed) for speed in VECTORS}
+    vectors = {speed: velocity(entries, speed) for speed in VECTORS}
     known = {speed: vector for speed, vector in vectors.items() if vector is not None}
-    pairs = [{first, second} <= {*known} for first, second in _COMPLETE]
-    open_names = [n for s in VECTORS if s not in known for n in VECTORS[s] if n in entries]
+    uncertain = [n for s in VECTORS if s not in known for n in VECTORS[s] if n in entries]
     moving = [vector for vector in known.values() if vector]
-    is_known = pairs[0] or pairs[1] or (any(pairs[2:]) and len(known) > 2)
-    if not (is_known and moving) or open_names or any(name in entries for name in _ACROSS):
-        return None, False
+    is_known = any({*speeds.split()} <= {*known} for speeds in _ENOUGH)
+    if not (is_known and moving) or any(n in entries for n in (*uncertain, *_ACROSS)):
+        return None
     if any(abs((moving[0].conjugate() * v).imag) > PARALLEL * abs(v * moving[0]) for v in moving):
-        return None, False
+        return None
     # A is taken to be the faster one where not both speeds before are known
     has_speeds = all(name in entries or VECTORS[name][0] in entries for name in ("SA", "SB"))
     approach = known.get("SA", 0j) - known.get("SB", 0j) if has_speeds else 0j
     if not approach:
         speed = next(name for name, vector in known.items() if vector)
         approach = known[speed] if speed[1] == "A" else -known[speed]
-    return math.degrees(math.atan2(-approach.imag + 0.0, -approach.real + 0.0)), any(pairs[2:])
+    return math.degrees(math.atan2(-approach.imag + 0.0, -approach.real + 0.0))
 
 
-def _vector(entries: Mapping[str, Amount], speed: str) -> complex | None:
+def plane_across(entries: Mapping[str, Amount]) -> tuple[dict[str, Amount], list[str]]:
+    """Return the entries of point masses that move along one line with a contact plane across it,
+    along which nothing acts, and remarks; other entries unchanged."""
+    line = line_of_motion(entries) if entries["M"].value == 4 and "GA" not in entries else None
+    if line is None:
+        return dict(entries), []
+    remarks = [
+        "the motion is along one line: the contact plane is across it, and nothing acts along the "
+        "plane (MU = 0)"
+    ]
+    result = {**entries, "GA": exact_number(line)}
+    is_implied = any(
+        None not in (velocity(entries, before), velocity(entries, after))
+        for before, after in (("SA", "SAF"), ("SB", "SBF"))
+    )
+    friction = [name for name in ("MU", "MUP") if name in entries]
+    if friction and entries[friction[0]].value == PIVOT:
+        return result, remarks
+    for name in friction:
+        del result[name]
+        remarks.append(f"{name} is not used: nothing slides along the plane")
+    if friction or not is_implied:
+        result["MU"] = exact_number(0.0)
+    return result, remarks
+
+
+def velocity(entries: Mapping[str, Amount], speed: str) -> complex | None:
     """Return a velocity x + iy, 0 at rest, None if its direction is not known exactly; its size is
     1 if that is not known."""
-    x, y, course = VECTORS[speed]
-    size = entries.get(speed)
-    if size and not size.varies and size.value == 0:
+    values = {n: entries[n].value for n in (speed, *VECTORS[speed]) if n in entries}
+    exact = {name: value for name, value in values.items() if not entries[name].varies}
+    x, y, course = (exact.get(name) for name in VECTORS[speed])
+    if exact.get(speed) == 0:
         return 0j
-    if x in entries and y in entries and not (entries[x].varies or entries[y].varies):
-        return complex(entries[x].value, entries[y].value)
-    if course in entries and not entries[course].varies:
-        turn = math.radians(entries[course].value)
-        return (size.value if size else 1.0) * complex(math.cos(turn), math.sin(turn))
+    if x is not None and y is not None:
+        return complex(x, y)
+    if course is not None:
+        return cmath.rect(values.get(speed, 1.0), math.radians(course))
     return None

@@ -1,46 +1,45 @@
-"""Remarks on implausible values: a wrong unit or decimal mark, other axes, other angles.
+"""Remarks on implausible values: a wrong unit or decimal mark, other axes, other angles; and values
+that no impact has.
 
 A remark never refuses a value: a scene may be a model, a barrier or a test of the program. The
 rules are elementwise, for the numbers of a case and for the columns of a table."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf
 from typing import Any, NamedTuple
 
 from ..names import LENGTH, MASS, VELOCITY, quantity
-from .estimates import inertia_of_weight, is_car, rectangle_inertia, weight
+from .estimates import is_car, usual_inertia, weight
 from .units import View
 
-MIN_MASS = 200.0  # kg; vehicles within these two pass without a remark
-MAX_MASS = 60_000.0  # kg
-MAX_ARM = 15.0  # m, from a vehicle's center of gravity to the contact point
-MAX_SPEED = 500 / 3.6  # m/s
-MIN_INERTIA_RATIO = 0.3  # of a yaw inertia to its estimate
-MAX_INERTIA_RATIO = 3.0
-MAX_SIDESLIP = 45.0  # degrees between a moving vehicle's course and its heading
-SIDESLIP_TOL = 1e-9  # degrees; rounding may put an exact 45 above it
+LIMITS = {
+    MASS: (200.0, 60_000.0, "no vehicle has that mass (200 kg to 60 t)"),
+    VELOCITY: (0.0, 500 / 3.6, "no vehicle is as fast (500 km/h)"),
+    LENGTH: (0.0, 15.0, "the contact point is more than 15 m from the center of gravity"),
+}
+"""Smallest and largest size in m, kg, s of what a vehicle has, by the rule of the quantity."""
+MAX_RATIO = 3.0  # of a car's yaw inertia to its estimate, either way
+MAX_SIDESLIP = 45.0 + 1e-9  # degrees from a course to the heading; rounding may exceed an exact 45
+RESISTANCES = {"UX": "MA", "UY": "MA", "VX": "MB", "VY": "MB", "WA": "IA", "WB": "IB"}
+"""Velocities, each with the mass or inertia that is infinite for a barrier."""
 
 
-class Implausible(NamedTuple):
-    """A remark on a value.
-
-    ``where``: True or False, of a column a mask; ``words``: the remark, with places for the
-    ``entry`` as written and for ``amount``, of a column an array."""
+class Remark(NamedTuple):
+    """A remark on a value; ``where``: True or False, of a column a mask."""
 
     name: str
     where: Any
     words: str
-    amount: Any = 0.0
 
 
 def implausible(
     values: Mapping[str, Any],
     view: View,
     courses: Mapping[str, Any],
-    sizes: Mapping[str, float],
-) -> Iterator[Implausible]:
+    sizes: Mapping[str, Sequence[float]],
+) -> Iterator[Remark]:
     """Yield the remarks that may apply to values.
 
     Parameters
@@ -51,76 +50,47 @@ def implausible(
         Without units, magnitudes are not looked at.
     courses : mapping of str to float or array
         The vehicles' courses in degrees, by "A" and "B".
-    sizes : mapping of str to float
-        LA BA LB BB in base units.
+    sizes : mapping of str to sequence of float
+        Length and width of the vehicles in base units, by "A" and "B".
     """
     has_size = values.get("M", 6.0) != 4
-    if view.units:
-        yield from _magnitudes(values, view, has_size)
-        for vehicle in "AB":
-            if f"M{vehicle}" in values and f"I{vehicle}" in values:
-                yield _inertia(vehicle, values, view, sizes, has_size)
-    for vehicle, course in courses.items():
-        if f"T{vehicle}" in values:
-            front = values[f"T{vehicle}"] + 180.0 * (vehicle == "A")
-            sideslip = abs((course - front + 180.0) % 360.0 - 180.0)
-            yield Implausible(
-                f"T{vehicle}",
-                (sideslip > MAX_SIDESLIP + SIDESLIP_TOL) & has_size,
-                f"{vehicle} moves {{amount:.0f}}° off the way it faces "
-                f"({'A faces TA + 180' if vehicle == 'A' else 'B faces TB'} in the listing's "
-                "axes); are velocities and headings in one convention? (axes, headings)",
-                sideslip,
-            )
-    if "EM" in values:
-        words = (
-            "{entry}: the moment at the contact leaves both vehicles with one spin; "
-            "no moment is EM = 1"
-        )
-        yield Implausible("EM", (values["EM"] == 0) & has_size, words)
-
-
-_LIMITS = {
-    MASS: (MIN_MASS, MAX_MASS, "{entry}: no vehicle has that mass (200 kg to 60 t)"),
-    VELOCITY: (0.0, MAX_SPEED, "{entry}: no vehicle is as fast (500 km/h)"),
-    LENGTH: (
-        0.0,
-        MAX_ARM,
-        "{entry}: the contact point is more than 15 m from the center of gravity",
-    ),
-}
-"""Smallest and largest size in m, kg, s, and the remark, by the rule of the quantity."""
-
-
-def _magnitudes(values: Mapping[str, Any], view: View, has_size: Any) -> Iterator[Implausible]:
-    """Yield remarks on masses, speeds and arms that no vehicle has."""
-    for name, value in values.items():
+    for name, value in values.items() if view.units else ():
         rule = quantity(name).unit
-        if rule in _LIMITS and (rule != LENGTH or name in ("DA", "DB")):
-            low, high, words = _LIMITS[rule]
+        if rule in LIMITS and (rule != LENGTH or name in ("DA", "DB")):
+            low, high, words = LIMITS[rule]
             size = abs(value) * float(view.base_size(rule))
-            is_off = ((size > 0) & (size < low)) | ((size > high) & (size < math.inf))
-            yield Implausible(name, is_off & (has_size if rule == LENGTH else True), words)
+            is_off = ((size > 0) & (size < low)) | ((size > high) & (size < inf))
+            yield Remark(name, is_off & ((rule != LENGTH) | has_size), words)
+    for vehicle in "AB":
+        mass, inertia, heading = (values.get(f"{kind}{vehicle}") for kind in "MIT")
+        if view.units and mass is not None and inertia is not None:
+            usual = usual_inertia(mass, sizes.get(vehicle, ()), view)
+            is_off = (inertia < usual / MAX_RATIO) | ((inertia > usual * MAX_RATIO) & (inertia < inf))
+            words = f'far from what I{vehicle} = "estimate" gives'
+            yield Remark(f"I{vehicle}", is_off & has_size & is_car(weight(mass, view)), words)
+        if heading is not None and vehicle in courses:
+            front = heading + 180.0 * (vehicle == "A")
+            sideslip = abs((courses[vehicle] - front + 180.0) % 360.0 - 180.0)
+            words = (
+                f"{vehicle} moves more than 45° off the way it faces "
+                f"({'A faces TA + 180' if vehicle == 'A' else 'B faces TB'} in the listing's "
+                "axes); are velocities and headings in one convention? (axes, headings)"
+            )
+            yield Remark(f"T{vehicle}", (sideslip > MAX_SIDESLIP) & has_size, words)
+    if "EM" in values:
+        words = "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1"
+        yield Remark("EM", (values["EM"] == 0) & has_size, words)
 
 
-def _inertia(
-    vehicle: str,
-    values: Mapping[str, Any],
-    view: View,
-    sizes: Mapping[str, float],
-    has_size: Any,
-) -> Implausible:
-    """Return the remark on a yaw inertia far from its estimate, of a vehicle of plausible mass."""
-    mass, inertia = values[f"M{vehicle}"], values[f"I{vehicle}"]
-    kilograms, pounds = mass * float(view.base_size(MASS)), weight(mass, view)
-    length, width = sizes.get(f"L{vehicle}"), sizes.get(f"B{vehicle}")
-    is_known = (kilograms >= MIN_MASS) & (kilograms <= MAX_MASS)
-    is_known = is_known & (inertia > 0) & (inertia < math.inf) & has_size
-    if length and width:
-        usual = rectangle_inertia(mass, length, width)
-    else:
-        usual, is_known = inertia_of_weight(pounds, view), is_known & is_car(pounds)
-    ratio = inertia / (usual + (usual == 0))
-    is_off = (ratio < MIN_INERTIA_RATIO) | (ratio > MAX_INERTIA_RATIO)
-    words = f'{{entry}} is {{amount:.2g}} times what I{vehicle} = "estimate" gives'
-    return Implausible(f"I{vehicle}", is_known & is_off, words, ratio)
+def impossible(values: Mapping[str, Any]) -> Iterator[Remark]:
+    """Yield the reasons why values may be those of no impact; ``values`` as for `implausible`."""
+    has_size = values["M"] != 4
+    yield Remark("M", has_size & (values["M"] != 6), "is neither 6 nor 4 (point masses)")
+    for names, is_used in (("MA MB", True), ("IA IB", has_size)):
+        for name in names.split():
+            yield Remark(name, (values.get(name, 1.0) <= 0) & is_used, "is not above 0")
+    for name, inertia in RESISTANCES.items():
+        is_fixed = values.get(inertia, 0.0) == inf
+        moves = values.get(name, 0.0) != 0
+        yield Remark(name, is_fixed & moves, f"is not 0, and {inertia} is infinite: a barrier rests")
+    yield Remark("MB", (values["MA"] == inf) & (values["MB"] == inf), "is infinite, and so is MA")

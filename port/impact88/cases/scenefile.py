@@ -7,6 +7,7 @@ from __future__ import annotations
 import datetime
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -40,8 +41,6 @@ The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) op
 def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
     """Return the entries of a flat TOML document as texts, and their lines.
 
-    ``NAME = {value = ..., source = ...}`` gives NAME and NAME_source.
-
     Raises
     ------
     UserError
@@ -52,33 +51,23 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
         if len(line) > MAX_LINE:
             place = f"{source}, line {number}"
             raise UserError(f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE", place)
-    places: dict[str, int] = {}
-    repetition = ""
-    for number, line in enumerate(lines, 1):
-        if (match := _KEY.match(line)) and places.setdefault(match[1], number) != number:
-            repetition = f"; line {number} has {match[1]} again"
+    matches = {number: _KEY.match(line) for number, line in enumerate(lines, 1)}
+    keys = Counter(match[1] for match in matches.values() if match)
     try:
         values = tomllib.loads(text, parse_float=str)
     except tomllib.TOMLDecodeError as error:
-        advice = "; expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
-        raise UserError(f"is not TOML: {error}{repetition}{advice}", source) from None
+        advice = "expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
+        twice = [f", and {name} once" for name, count in keys.items() if count > 1]
+        raise UserError(f"is not TOML: {error}; {advice}{''.join(twice)}", source) from None
     except (RecursionError, ValueError):  # nested deeply; a whole number of 4,300 digits
         raise UserError("is not a scene; expected one NAME = VALUE a line", source) from None
-    texts: dict[str, str] = {}
+    places = {match[1]: number for number, match in matches.items() if match}
     for name, value in values.items():
-        place = f"{source}, line {places[name]}" if name in places else source
-        if isinstance(value, dict) and "value" in value and {*value} <= {"value", "source"}:
-            if "source" in value:
-                texts[name + SOURCE] = str(value["source"])
-            value = value["value"]
-        if name in ABOUT and isinstance(value, datetime.date):
-            value = str(value)
-        if isinstance(value, bool) or not isinstance(value, str | int):
-            kinds = {bool: "a truth value", list: "a list", dict: "a table"}
-            kind = kinds.get(type(value), "a date")
-            raise UserError(f"{name} is {kind}; expected a number or a text", place)
-        texts[name] = str(value)
-    return texts, places
+        is_date = name in ABOUT and isinstance(value, datetime.date)
+        if isinstance(value, bool) or not (is_date or isinstance(value, str | int)):
+            place = f"{source}, line {places[name]}" if name in places else source
+            raise UserError(f"{name} = {quoted(value)}: expected a number or a text", place)
+    return {name: str(value) for name, value in values.items()}, places
 
 
 def write_toml(texts: Mapping[str, str], heading: str = "", view: View = PLAIN) -> str:

@@ -7,7 +7,6 @@ a unit is the factor, SAE axes its sign, compass headings the offset. Results us
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import asdict, dataclass
 from fractions import Fraction
@@ -35,7 +34,7 @@ from ..names import (
 )
 
 _TABLE = """
-length              | us     | 0.3048            | ft foot feet
+length              | us     | ft                | ft foot feet
 length              | us     | 0.0254            | in inch inches
 length              | us     | 0.9144            | yd yard yards
 length              | us     | 1609.344          | mi mile miles
@@ -44,52 +43,51 @@ length              | metric | 0.01              | cm
 length              | metric | 0.001             | mm
 length              | metric | 1000              | km
 length/time         | us     | 0.44704           | mph mi/h
-length/time         | us     | 0.3048            | ft/s fps ft/sec
-length/time         | us     | 1852 / 3600       | kn kt knot knots
-length/time         | metric | 1000 / 3600       | km/h kph kmh
+length/time         | us     | ft                | ft/s fps ft/sec
+length/time         | us     | 463/900           | kn kt knot knots
+length/time         | metric | 5/18              | km/h kph kmh
 length/time         | metric | 1                 | m/s m/sec
 mass                | us     | lb                | lb lbs pound pounds lbm lbf
-mass                | us     | lb * g / 0.3048   | slug slugs
+mass                | us     | lb g per-ft       | slug slugs
 mass                | metric | 1                 | kg kgs kilogram kilograms
 mass                | metric | 1000              | t tonne tonnes
-mass                | metric | 1 / g             | N
-mass                | metric | 1000 / g          | kN
-mass·length²        | us     | lb * g * 0.3048   | lb-ft-s2 ft-lb-s2 lbf-ft-s2 ft-lbf-s2 slug-ft2
-mass·length²        | us     | lb * g * 0.0254   | lb-in-s2 in-lb-s2
-mass·length²        | us     | lb * 0.3048 * 0.3048 | lb-ft2 lbm-ft2
+mass                | metric | per-g             | N
+mass                | metric | 1000 per-g        | kN
+mass·length²        | us     | lb g ft           | lb-ft-s2 ft-lb-s2 lbf-ft-s2 ft-lbf-s2 slug-ft2
+mass·length²        | us     | lb g 0.0254       | lb-in-s2 in-lb-s2
+mass·length²        | us     | lb ft ft          | lb-ft2 lbm-ft2
 mass·length²        | metric | 1                 | kg-m2 N-m-s2
-mass·length²/time²  | us     | lb * g * 0.3048   | ft-lb lb-ft ft-lbf lbf-ft
+mass·length²/time²  | us     | lb g ft           | ft-lb lb-ft ft-lbf lbf-ft
 mass·length²/time²  | metric | 1                 | J N-m
 mass·length²/time²  | metric | 1000              | kJ kN-m
-mass·length/time²   | us     | lb * g            | lb lbs pound pounds lbf
+mass·length/time²   | us     | lb g              | lb lbs pound pounds lbf
 mass·length/time²   | metric | 1                 | N
 mass·length/time²   | metric | 1000              | kN
-mass·length/time    | us     | lb * g            | lb-s lbf-s slug-ft/s
+mass·length/time    | us     | lb g              | lb-s lbf-s slug-ft/s
 mass·length/time    | metric | 1                 | N-s kg-m/s
 mass·length/time    | metric | 1000              | kN-s
-mass·length²/time   | us     | lb * g * 0.3048   | ft-lb-s lb-ft-s ft-lbf-s lbf-ft-s
+mass·length²/time   | us     | lb g ft           | ft-lb-s lb-ft-s ft-lbf-s lbf-ft-s
 mass·length²/time   | metric | 1                 | N-m-s kg-m2/s
 time                |        | 1                 | s sec second seconds
 time                |        | 0.001             | ms
 rad/time            |        | 1                 | rad/s rad/sec
-rad/time            |        | pi / 180          | deg/s °/s degree/s degrees/s deg/sec
-rad/time            |        | pi / 30           | rpm
+rad/time            |        | pi 1/180          | deg/s °/s degree/s degrees/s deg/sec
+rad/time            |        | pi 1/30           | rpm
 degree              |        | 1                 | deg ° degree degrees
-degree              |        | 180 / pi          | rad radian radians
+degree              |        | 180 per-pi        | rad radian radians
 percent             |        | 1                 | % percent
 1                   |        | 0.01              | % percent
 """
 """The units that an amount may have: rule of the quantity (`names`), side, size in m, kg, s,
-degrees and rad/s, and spellings, the first of which is shown. A mass may be given as its weight."""
-_CONSTANTS = {
-    "lb": Fraction("0.45359237"),  # kg
-    "g": Fraction("9.80665"),  # m/s²
-    "pi": Fraction("3.14159265358979323846264338327950288419716939937510"),
-}
+degrees and rad/s as a product, and spellings, the first of which is shown. A mass may be given as
+its weight."""
 FOOT = Fraction("0.3048")  # m
-POUND = _CONSTANTS["lb"]
-GRAVITY = _CONSTANTS["g"]
+POUND = Fraction("0.45359237")  # kg
+GRAVITY = Fraction("9.80665")  # m/s²
 SLUG = POUND * GRAVITY / FOOT  # kg
+PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+_FACTORS = {"lb": POUND, "g": GRAVITY, "ft": FOOT, "pi": PI}
+_FACTORS |= {f"per-{name}": 1 / factor for name, factor in _FACTORS.items()}
 
 
 class Unit(NamedTuple):
@@ -100,23 +98,17 @@ class Unit(NamedTuple):
     side: str
 
 
-def _size(words: str) -> Fraction:
-    """Return the value of a product in `_TABLE`."""
-    top, _, bottom = words.partition(" / ")
-    factors = [_CONSTANTS.get(word) or Fraction(word) for word in top.split(" * ")]
-    divisor = _CONSTANTS.get(bottom) or Fraction(bottom or 1)
-    return math.prod(factors, start=Fraction(1)) / divisor
-
-
 @lru_cache(maxsize=1)
 def _units() -> dict[tuple[str, str], Unit]:
     """Return the units of `_TABLE` by rule and normalized spelling."""
     units: dict[tuple[str, str], Unit] = {}
     for row in _TABLE.strip().splitlines():
-        rule, side, size, spellings = (cell.strip() for cell in row.split("|"))
-        symbols = spellings.split()
-        unit = Unit(symbols[0], _size(size), side)
-        units |= {(rule, _normalize(symbol)): unit for symbol in symbols}
+        rule, side, product, spellings = (cell.strip() for cell in row.split("|"))
+        size = Fraction(1)
+        for factor in product.split():
+            size *= _FACTORS.get(factor) or Fraction(factor)
+        unit = Unit(spellings.partition(" ")[0], size, side)
+        units |= {(rule, _normalize(symbol)): unit for symbol in spellings.split()}
     return units
 
 
@@ -150,24 +142,24 @@ DIMENSIONS = {
 
 
 class System(NamedTuple):
-    """A system of units: its base units of length and mass in m and kg, its side, and the unit in
-    which values of each rule are shown."""
+    """A system of units: its base units of length and mass in m and kg, and the unit in which
+    values of each rule are shown."""
 
     length: Fraction
     mass: Fraction
-    side: str
     shown: dict[str, str]
 
 
+_BOTH = {TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
 _FEET = {LENGTH: "ft", INERTIA: "lb-ft-s2", ENERGY: "ft-lb", FORCE: "lb", IMPULSE: "lb-s"}
-_FEET |= {TURNING: "ft-lb-s", TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
+_FEET |= {TURNING: "ft-lb-s", **_BOTH}
 _METERS = {LENGTH: "m", INERTIA: "kg-m2", ENERGY: "J", FORCE: "N", IMPULSE: "N-s"}
-_METERS |= {TURNING: "N-m-s", MASS: "kg", TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
+_METERS |= {TURNING: "N-m-s", MASS: "kg", **_BOTH}
 SYSTEMS = {
-    "us": System(FOOT, SLUG, "us", {**_FEET, VELOCITY: "mph", MASS: "lb"}),
-    "chapter": System(FOOT, SLUG, "us", {**_FEET, VELOCITY: "ft/s", MASS: "slug"}),
-    "metric": System(Fraction(1), Fraction(1), "metric", {**_METERS, VELOCITY: "km/h"}),
-    "si": System(Fraction(1), Fraction(1), "metric", {**_METERS, VELOCITY: "m/s"}),
+    "us": System(FOOT, SLUG, {**_FEET, VELOCITY: "mph", MASS: "lb"}),
+    "chapter": System(FOOT, SLUG, {**_FEET, VELOCITY: "ft/s", MASS: "slug"}),
+    "metric": System(Fraction(1), Fraction(1), {**_METERS, VELOCITY: "km/h"}),
+    "si": System(Fraction(1), Fraction(1), {**_METERS, VELOCITY: "m/s"}),
 }
 """Choices of ``units``."""
 _CHOICES = {
@@ -254,6 +246,12 @@ class View:
         unit = self.unit(name)
         return f"{name} [{unit}]" if unit else name
 
+    def meaning(self, name: str) -> str:
+        """Return the meaning of a quantity in words, with the zero of its direction."""
+        zero = "clockwise from north" if self._turns(name) else "from the x axis"
+        meaning: str = quantity(name).meaning.replace("from the x axis", zero)
+        return meaning
+
     def map(self, name: str, unit: str = "") -> tuple[Fraction, Fraction]:
         """Return factor and offset of ``base = offset + factor * shown``.
 
@@ -278,7 +276,7 @@ class View:
             return value
         scaled = (value - float(offset)) * float(1 / factor) + 0.0  # no -0
         if name == "MUP":  # the pivot's mark keeps its sign
-            scaled = scaled + (value == PIVOT) * (PIVOT - PIVOT * float(1 / factor))
+            scaled = scaled + 2 * PIVOT * (value == PIVOT)
         return scaled % 360.0 if self._turns(name) else scaled
 
     def shown_text(self, name: str, value: float) -> str:
@@ -301,7 +299,7 @@ class View:
         return first, second
 
     def _turns(self, name: str) -> bool:
-        """Return True for directions that are shown from 0 to 360 degrees."""
+        """Return True for directions that are shown from 0 to 360 degrees, from north."""
         return bool(self.headings) and name in FROM_NORTH
 
 
@@ -322,7 +320,7 @@ def _affine_map(view: View, name: str, unit: str) -> tuple[Fraction, Fraction]:
 
 
 def system_using(units: list[tuple[str, str]]) -> str:
-    """Return the system in which to show values written with units, "" if the units name none.
+    """Return the system, us or metric, of values written with units, "" if the units name none.
 
     Parameters
     ----------
@@ -337,9 +335,4 @@ def system_using(units: list[tuple[str, str]]) -> str:
     sides = {unit_of(rule, symbol).side for rule, symbol in units} - {""}
     if len(sides) > 1:
         raise UserError('units of two systems; expected units = "us" or "metric", too (--units)')
-    counts = {
-        name: sum(system.shown.get(rule) == symbol for rule, symbol in units)
-        for name, system in SYSTEMS.items()
-        if system.side in sides
-    }
-    return max(counts, key=lambda name: counts[name], default="")
+    return "".join(sides)

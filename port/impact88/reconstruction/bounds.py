@@ -106,7 +106,7 @@ class _Box:
         amounts = {"M": Amount.exactly(BODIES), **contact_point(amounts)}
         if amounts["M"].value == POINT:
             amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
-            line = None if "GA" in amounts else line_of_motion(amounts)[0]
+            line = None if "GA" in amounts else line_of_motion(amounts)
             if line is not None:  # nothing acts along the plane
                 amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
         self.varied = {name: amount for name, amount in amounts.items() if amount.varies}

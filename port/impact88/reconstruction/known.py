@@ -34,8 +34,10 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
         raise UserError(f"{quoted(known)} is not a mapping; expected names with their values")
     check_names(known, allowed, "quantity")
     given = {name: value for name, value in known.items() if value is not None}
-    if any(isinstance(value, str) for value in given.values()):
-        return dict(Case.of(given, "values").entries)
+    amounts = {name: v for name, v in given.items() if isinstance(v, Amount)}
+    others = {name: value for name, value in given.items() if name not in amounts}
+    if any(isinstance(value, str) for value in others.values()):
+        return {**Case.of(others, "values").entries, **amounts}
     return {name: _as_amount(name, value) for name, value in given.items()}
 
 

@@ -227,7 +227,7 @@ class Problem:
             self.without_plane = True
             names = names[1:]
         else:
-            line, _ = line_of_motion(known)
+            line = line_of_motion(known)
             if line is not None:
                 known["GA"] = Amount.exactly(line)
                 self.remarks.append(

@@ -16,7 +16,6 @@ ENDINGS = {
     ".csv": "csv",
     ".tsv": "csv",
     ".txt": "csv",
-    ".json": "jsonl",
     ".jsonl": "jsonl",
     ".ndjson": "jsonl",
     ".parquet": "parquet",
@@ -42,7 +41,7 @@ def format_of(path: str, given: str = "") -> str:
     return ENDINGS[ending]
 
 
-def read_table(path: str, kind: str = "", encoding: str = "", digits: bool = False) -> Table:
+def read_table(path: str, kind: str = "", digits: bool = False) -> Table:
     """Return a table, whose blocks of rows are read as they are asked for.
 
     Parameters
@@ -51,8 +50,6 @@ def read_table(path: str, kind: str = "", encoding: str = "", digits: bool = Fal
         The file, ``-`` for standard input (CSV or JSON Lines).
     kind : {"", "csv", "jsonl", "parquet", "xlsx"}, default ""
         Its format, by default that of its name.
-    encoding : str, default ""
-        Of CSV that is neither UTF-8 nor UTF-16 with its mark.
     digits : bool, default False
         Keep the digits of numbers in JSON, for the 1988 arithmetic; texts always keep them.
 
@@ -63,7 +60,7 @@ def read_table(path: str, kind: str = "", encoding: str = "", digits: bool = Fal
     """
     kind = format_of(path, kind)
     if kind == "csv":
-        return textformats.read_csv(path, encoding)
+        return textformats.read_csv(path)
     if kind == "jsonl":
         return textformats.read_json(path, digits)
     if path == "-":

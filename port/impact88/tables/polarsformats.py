@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 import os
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import IO, Any
 
 import numpy as np
 
-from ..errors import UserError, library, quoted
+from ..errors import UserError, library
 from ..files import decoding
 from .textformats import BLOCK_ROWS, Block, Column, Table, check_headings, heading_name
 
 MAX_BYTES = 256_000_000  # that a file may decode to, or `MAX_RATIO` times its own size
 MAX_RATIO = 20
 MAX_HEADING_ROW = 50  # titles and remarks above the headings are some lines
-MAX_SHEETS = 20  # in which headings are sought
 MAX_SHEET_ROWS = 1_048_576  # of Excel
 
 
@@ -26,7 +25,7 @@ def polars() -> Any:
     return library("polars", "tables", "this format")
 
 
-def check_size(path: str, size: int) -> None:
+def _check_size(path: str, size: int) -> None:
     """Raise UserError for a file that decodes to far more than its own size."""
     if size > max(MAX_BYTES, MAX_RATIO * os.path.getsize(path)):
         raise UserError(f"decodes to {size:,} bytes; expected less than {MAX_BYTES:,}", path)
@@ -40,79 +39,63 @@ def read_parquet(path: str) -> Table:
         names = lazy.collect_schema().names()
         rows = lazy.select(pl.len()).collect().item()
     check_headings(names, path)
-    check_size(path, 8 * rows * len(names))
+    _check_size(path, 8 * rows * len(names))
 
     def blocks() -> Iterator[Block]:
-        for at in range(0, rows, BLOCK_ROWS):
+        for start in range(0, rows, BLOCK_ROWS):
             with decoding(path, "is not a Parquet file"):
-                frame = lazy.slice(at, BLOCK_ROWS).collect()
-            yield Block({name: _column(frame[name]) for name in names}, _numbers(at + 1, frame))
+                frame = lazy.slice(start, BLOCK_ROWS).collect()
+            columns = {name: _column(frame[name]) for name in names}
+            yield Block(columns, range(start + 1, start + 1 + frame.height))
 
     return Table(names, blocks(), path)
-
-
-def _numbers(first: int, frame: Any) -> range:
-    """Return the numbers of a frame's rows."""
-    return range(first, first + frame.height)
 
 
 def _column(series: Any) -> Column:
     """Return a series as an array if it holds numbers, else its texts."""
     if series.dtype.is_numeric():
         return series.cast(polars().Float64).to_numpy()
-    return series.cast(polars().String, strict=False)
+    return series.cast(polars().String, strict=False).to_list()
 
 
 def read_excel(path: str) -> Table:
-    """Return the table in a workbook: the row with most of the scene's names among the first rows
-    of its sheets has the headings.
+    """Return the table in the first sheet of a workbook: the row with most of the scene's names
+    among the first has the headings.
 
-    A column's cells are read as numbers, with all their bits, and what is left as text."""
+    A column's cells are read as numbers, with all their bits, and what is left as text. Raises
+    UserError."""
     polars()
     fastexcel = library("fastexcel", "tables", "an .xlsx")
+
+    def load(kind: str, **options: Any) -> Any:
+        with decoding(path, "is not an .xlsx workbook"):
+            return book.load_sheet(0, dtypes=kind, header_row=None, **options).to_polars()
+
     with decoding(path, "is not an .xlsx workbook"):
         with zipfile.ZipFile(path) as archive:
-            check_size(path, sum(member.file_size for member in archive.infolist()))
+            _check_size(path, sum(member.file_size for member in archive.infolist()))
         book = fastexcel.read_excel(path)
-        sheets = book.sheet_names[:MAX_SHEETS]
-        options: dict[str, Any] = {"header_row": None, "n_rows": MAX_HEADING_ROW}
-        rows = [
-            (sheet, at, [str(cell or "").strip() for cell in row])
-            for sheet in sheets
-            for at, row in enumerate(
-                book.load_sheet(sheet, dtypes="string", **options).to_polars().rows()
-            )
-        ]
-    sheet, at, texts = max(rows, key=lambda row: _count_names(row[2]), default=("", 0, []))
-    if not _count_names(texts):
+    rows = [[cell or "" for cell in row] for row in load("string", n_rows=MAX_HEADING_ROW).rows()]
+    counts = [sum(bool(heading_name(cell)[0]) for cell in row) for row in rows]
+    if not any(counts):
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
-    while not texts[-1]:
-        texts.pop()
-    names = check_headings(texts, path)
-    options = {
-        "header_row": None,
-        "skip_rows": at + 1,
-        "use_columns": list(range(len(names))),
-        "column_names": names,
-        "dtype_coercion": "coerce",
-    }
-    with decoding(path, "is not an .xlsx workbook"):
-        numbers = book.load_sheet(sheet, dtypes="float", **options).to_polars()
-        words = book.load_sheet(sheet, dtypes="string", **options).to_polars()
-    remarks = [f"sheet {quoted(sheet)}, headings in row {at + 1}"] if at or len(sheets) > 1 else []
+    skipped = counts.index(max(counts)) + 1
+    headings = rows[skipped - 1]
+    while not headings[-1].strip():
+        headings.pop()
+    names = check_headings(headings, path)
+    options = {"skip_rows": skipped, "use_columns": [*range(len(names))], "column_names": names}
+    numbers = load("float", dtype_coercion="coerce", **options)
+    texts = load("string", dtype_coercion="coerce", **options)
 
     def blocks() -> Iterator[Block]:
-        for start in range(0, words.height, BLOCK_ROWS):
-            parts = numbers.slice(start, BLOCK_ROWS), words.slice(start, BLOCK_ROWS)
-            columns = {n: _merge_cells(parts[0][n], parts[1][n]) for n in names}
-            yield Block(columns, _numbers(at + 2 + start, parts[1]))
+        for start in range(0, texts.height, BLOCK_ROWS):
+            parts = numbers.slice(start, BLOCK_ROWS), texts.slice(start, BLOCK_ROWS)
+            columns = {name: _merge_cells(parts[0][name], parts[1][name]) for name in names}
+            first = skipped + 1 + start
+            yield Block(columns, range(first, first + parts[1].height))
 
-    return Table(names, blocks(), path, remarks=tuple(remarks))
-
-
-def _count_names(texts: Sequence[str]) -> int:
-    """Return how many texts are headings of quantities."""
-    return sum(bool(heading_name(text)[0]) for text in texts)
+    return Table(names, blocks(), path)
 
 
 def _merge_cells(numbers: Any, texts: Any) -> Column:
@@ -123,36 +106,26 @@ def _merge_cells(numbers: Any, texts: Any) -> Column:
     return [text if number is None else repr(number) for number, text in pairs]
 
 
-def _is_float(column: Column) -> bool:
-    """Return True for an array of floats."""
-    return isinstance(column, np.ndarray) and column.dtype.kind == "f"
-
-
 def frame_of(columns: Mapping[str, Column]) -> Any:
     """Return columns as a frame; a number that is none is null, and so is an empty text, which
     polars would put in quotes."""
-    pl = polars()
     series = []
     for name, column in columns.items():
-        cells = (
-            column.tolist()
-            if isinstance(column, np.ndarray) and column.dtype.kind in "UO"
-            else column
-        )
-        if isinstance(cells, list):
-            cells = [None if cell == "" else cell for cell in cells]
-        series.append(pl.Series(name, cells, strict=False, nan_to_null=_is_float(column)))
-    return pl.DataFrame(series)
+        is_float = isinstance(column, np.ndarray) and column.dtype.kind == "f"
+        is_series = isinstance(column, polars().Series)
+        cells = column if is_float or is_series else [None if x == "" else x for x in column]
+        series.append(polars().Series(name, cells, strict=False, nan_to_null=is_float))
+    return polars().DataFrame(series)
 
 
 def frame_of_texts(columns: Mapping[str, Column]) -> Any:
     """Return columns as a frame whose numbers are written in the digits of Python's floats."""
     frame = frame_of(columns)
-    for name, column in columns.items():
-        size = np.abs(column) if _is_float(column) else np.zeros(1)
+    for name, dtype in frame.schema.items():
+        size = np.abs(columns[name]) if dtype.is_float() else np.zeros(1)
         # polars writes these in another notation
         if np.any((size >= 1e16) | ((size < 1e-4) & (size > 0))):
-            texts = [None if math.isnan(x) else repr(x) for x in column.tolist()]
+            texts = [None if math.isnan(x) else repr(x) for x in columns[name].tolist()]
             frame = frame.with_columns(polars().Series(name, texts))
     return frame
 

@@ -11,6 +11,7 @@ import io
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
@@ -20,7 +21,7 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 
 from ..errors import UserError, quoted
-from ..files import LONGEST_LINE, Source, decode, display_name, encoding_of
+from ..files import LONGEST_LINE, Source, check_text, display_name
 from ..names import RESULTS, SCENE
 
 Column = Any
@@ -42,15 +43,13 @@ class Table(NamedTuple):
     """A table being read.
 
     ``names``: its headings; ``blocks``: its rows; ``where``: its name in messages; ``counts``: what
-    row numbers count, "line" or "row";
-    ``remarks``: how it was read; ``extent``: the file's size in bytes, None if that is not known,
-    and a function that returns how many were read."""
+    row numbers count, "line" or "row"; ``extent``: the file's size in bytes, None if that is not
+    known, and a function that returns how many were read."""
 
     names: list[str]
     blocks: Iterator[Block]
     where: str = "table"
     counts: str = "row"
-    remarks: tuple[str, ...] = ()
     extent: tuple[int | None, Callable[[], int]] = (None, int)
 
 
@@ -58,14 +57,12 @@ def check_headings(names: Sequence[str], where: str) -> list[str]:
     """Return headings without blanks around them. Raises UserError for one that is empty or there
     twice, and for too many."""
     headings = [name.strip() for name in names]
-    if not any(headings):
-        raise UserError("holds nothing; expected a line of headings", where)
-    if len(headings) > MAX_COLUMNS:
-        raise UserError(f"has more than {MAX_COLUMNS:,} columns; expected a table of scenes", where)
-    if len({*headings}) < len(headings) or "" in headings:
-        name = next(n for at, n in enumerate(headings) if not n or n in headings[:at])
-        fault = f"{quoted(name)} twice" if name else f"no name for column {headings.index('') + 1}"
-        raise UserError(f"the headings have {fault}; expected a name for each column", where)
+    if not any(headings) or len(headings) > MAX_COLUMNS:
+        raise UserError(f"has no line of 1 to {MAX_COLUMNS:,} headings, such as UX [mph]", where)
+    for name, count in Counter(headings).items():
+        if count > 1 or not name:
+            fault = f"{quoted(name)} twice" if name else "one that is empty"
+            raise UserError(f"the headings have {fault}; expected a name for each column", where)
     return headings
 
 
@@ -82,73 +79,51 @@ def heading_name(heading: str) -> tuple[str, str]:
 # -- CSV
 
 
-def read_csv(path: str, encoding: str = "") -> Table:
+def read_csv(path: str) -> Table:
     """Return the table in a CSV file, ``-`` for standard input; fields are separated by commas,
     semicolons or tabs, and numbers among semicolons have a decimal comma. Raises UserError."""
     where, source = display_name(path), Source(path)
-    extent = source.extent
-    chunks = _chunks(source, where)
-    first = next(chunks, b"")
-    if encoding or encoding_of(first) != "utf-8":
-        first, chunks = _recode(b"".join([first, *chunks]), where, encoding), iter(())
-    line, _, body = first.partition(b"\n")
-    head = _utf8(line, where, 1).removeprefix("\ufeff")
+    chunks = _chunks(io.BufferedReader(source), where)
+    line, _, body = next(chunks, b"").partition(b"\n")
+    check_text(line, where, "CSV")
+    head = _decode(line, where, 1).removeprefix("\ufeff")
     delimiter = max(",;\t", key=head.count)
-    names = check_headings(next(_split_rows(head, delimiter, where), []), where)
+    fields = next((row for row, _ in _split_rows(head, delimiter, 1, where)), [])
+    names = check_headings(fields, where)
 
     def blocks() -> Iterator[Block]:
         line = 2
         for chunk in chain([body] if body else [], chunks):
-            block = find_spec("polars") and _split_plain(chunk, names, delimiter, line)
+            block = _split_plain(chunk, names, delimiter, line) if find_spec("polars") else None
             block = block or _split(chunk, names, delimiter, line, where)
             if block.rows:
                 yield _with_points(block) if delimiter == ";" else block
             line += chunk.count(b"\n")
 
-    return Table(names, blocks(), where, "line", extent=extent)
+    return Table(names, blocks(), where, "line", source.extent)
 
 
-def _split_rows(text: str, delimiter: str, where: str) -> Iterator[list[str]]:
-    """Yield the fields of each row, also of blank lines inside quotes. Raises UserError."""
-    csv.field_size_limit(LONGEST_LINE)
-    try:
-        yield from csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-    except csv.Error as error:
-        raise UserError(f"is not CSV: {error}", where) from None
-
-
-def _chunks(source: Source, where: str) -> Iterator[bytes]:
+def _chunks(file: IO[bytes], where: str) -> Iterator[bytes]:
     """Yield the bytes of a CSV file in chunks that end with a row's end outside quotes."""
-    tail = b""
-    while data := source.read(CHUNK_BYTES):
-        tail += data
-        end = tail.rfind(b"\n") + 1
-        if end and tail.count(b'"', 0, end) % 2 == 0:
-            yield tail[:end].replace(b"\r\n", b"\n")
-            tail = tail[end:]
-        elif len(tail) > 4 * CHUNK_BYTES:
-            raise UserError("has a line or a quoted text that does not end; expected CSV", where)
-    source.close()
-    if tail:
-        yield tail.replace(b"\r\n", b"\n")
+    chunk = b""
+    while data := file.read(CHUNK_BYTES):
+        chunk += data + file.readline(LONGEST_LINE)
+        if chunk.count(b'"') % 2 == 0:
+            yield chunk.replace(b"\r\n", b"\n")
+            chunk = b""
+        elif len(chunk) > 4 * CHUNK_BYTES:
+            raise UserError("has a quoted text that does not end; expected CSV", where)
+    if chunk:
+        yield chunk.replace(b"\r\n", b"\n")
 
 
-def _recode(data: bytes, where: str, encoding: str) -> bytes:
-    """Return text in an encoding, by default that of its mark, as UTF-8. Raises UserError."""
-    try:
-        text = data.decode(encoding) if encoding else decode(data, where)
-    except (LookupError, UnicodeDecodeError) as error:
-        raise UserError(f"cannot be read as {quoted(encoding)}: {error}", where) from None
-    return text.replace("\r\n", "\n").encode()
-
-
-def _utf8(chunk: bytes, where: str, line: int) -> str:
+def _decode(chunk: bytes, where: str, line: int) -> str:
     """Return the text of bytes that begin in a line. Raises UserError."""
     try:
         return chunk.decode()
     except UnicodeDecodeError as error:
         place = f"{where}, line {line + chunk.count(bytes([10]), 0, error.start)}"
-        raise UserError("is not UTF-8 text; expected --encoding, such as cp1252", place) from None
+        raise UserError("is not UTF-8 text; expected a file saved as CSV UTF-8", place) from None
 
 
 def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) -> Block | None:
@@ -157,10 +132,9 @@ def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) 
     import polars
 
     lines = b"\n" + chunk.removesuffix(b"\n") + b"\n"
-    mark = delimiter.encode()
-    rows = lines.count(b"\n") - 1
-    odd = (b'"', b"\r", b"\n\n", b"\n" + mark * (len(names) - 1) + b"\n")
-    if any(part in lines for part in odd) or lines.count(mark) != rows * (len(names) - 1):
+    rows, marks = lines.count(b"\n") - 1, delimiter.encode() * (len(names) - 1)
+    is_odd = any(part in lines for part in (b'"', b"\r", b"\n\n", b"\n" + marks + b"\n"))
+    if is_odd or lines.count(delimiter.encode()) != rows * len(marks):
         return None
     options: dict[str, Any] = {"has_header": False, "infer_schema": False, "quote_char": None}
     with suppress(polars.exceptions.PolarsError):  # rows of more and of fewer fields; not UTF-8
@@ -171,35 +145,47 @@ def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) 
     return None
 
 
+def _split_rows(
+    text: str, delimiter: str, line: int, where: str
+) -> Iterator[tuple[list[str], int]]:
+    """Yield the fields of each row, and the number of its first line. Raises UserError."""
+    csv.field_size_limit(LONGEST_LINE)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    try:
+        first = line
+        for row in reader:
+            yield row, first
+            first = line + reader.line_num
+    except csv.Error as error:
+        raise UserError(f"is not CSV: {error}", where) from None
+
+
 def _split(chunk: bytes, names: Sequence[str], delimiter: str, line: int, where: str) -> Block:
     """Return the block of a chunk by the csv module. Raises UserError for a row of another
     width."""
     rows, numbers = [], []
-    for row in _split_rows(_utf8(chunk, where, line), delimiter, where):
+    for row, number in _split_rows(_decode(chunk, where, line), delimiter, line, where):
         if len(row) not in (0, len(names)):
             fault = f"has {len(row)} fields; expected {len(names)}, as in the headings"
-            raise UserError(fault, f"{where}, line {line}")
+            raise UserError(fault, f"{where}, line {number}")
         if any(row):
             rows.append(row)
-            numbers.append(line)
-        line += 1 + sum(cell.count("\n") for cell in row)
+            numbers.append(number)
     columns = zip(*rows, strict=True) if rows else [()] * len(names)
     return Block({n: list(column) for n, column in zip(names, columns, strict=True)}, numbers)
 
 
-_DECIMAL_COMMA = r"^\s*([-+]?\d*)\.?(\d*),(\d)"
-
-
 def _with_points(block: Block) -> Block:
     """Return a block whose quantities have decimal points in place of decimal commas."""
-    columns = dict(block.columns)
-    for heading, column in columns.items():
-        if not heading_name(heading)[0]:
-            continue
-        if isinstance(column, list):
-            columns[heading] = [re.sub(_DECIMAL_COMMA, r"\1\2.\3", cell) for cell in column]
-        else:
-            columns[heading] = column.str.replace(_DECIMAL_COMMA, "${1}${2}.${3}")
+    columns = {
+        heading: [
+            cell.replace(".", "").replace(",", ".") if cell and "," in cell else cell
+            for cell in column
+        ]
+        if heading_name(heading)[0]
+        else column
+        for heading, column in block.columns.items()
+    }
     return block._replace(columns=columns)
 
 
@@ -207,62 +193,46 @@ def _with_points(block: Block) -> Block:
 
 
 def read_json(path: str, digits: bool = False) -> Table:
-    """Return the table in a file of JSON Lines, one object for each row, or of one array of
-    objects. ``digits``: keep those of numbers, as texts. Raises UserError."""
+    """Return the table in a file of JSON Lines, one object for each row. ``digits``: keep those of
+    numbers, as texts. Raises UserError."""
     where, source = display_name(path), Source(path)
-    records = _records(io.BufferedReader(source), where, str if digits else None)
-    first = next(records, None)
+    rows = _json_rows(io.BufferedReader(source), where, str if digits else None)
+    first = next(rows, None)
     if first is None:
         raise UserError("holds nothing; expected an object for each row", where)
     names = check_headings(list(first[1]), where)
 
     def blocks() -> Iterator[Block]:
-        rows = chain([first], records)
-        while block := list(islice(rows, BLOCK_ROWS)):
+        remaining = chain([first], rows)
+        while block := list(islice(remaining, BLOCK_ROWS)):
             for number, row in block:
-                for name in row.keys() - {*names}:
-                    fault = (
-                        f"{quoted(name)} is not in the first row; expected the same names in each"
-                    )
+                if unknown := row.keys() - {*names}:
+                    fault = f"{quoted(min(unknown))} is not in the first row; expected its names"
                     raise UserError(fault, f"{where}, line {number}")
             columns = {name: [row.get(name) for _, row in block] for name in names}
             yield Block(columns, [number for number, _ in block])
 
-    return Table(names, blocks(), where, "line", extent=source.extent)
+    return Table(names, blocks(), where, "line", source.extent)
 
 
-def _records(
+def _json_rows(
     file: IO[bytes], where: str, numeral: type[str] | None
 ) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the objects of a file with their lines, of an array with their numbers. Raises
-    UserError for a value that is no flat object."""
+    """Yield the objects of a file with their lines. Raises UserError for a line that is no flat
+    object."""
     number = 0
     while line := file.readline(LONGEST_LINE):
         number += 1
-        place = f"{where}, line {number}"
-        if line.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"["):
-            line += file.read(LONGEST_LINE * 100)
-        elif len(line) == LONGEST_LINE:
-            raise UserError(f"is longer than {LONGEST_LINE:,} bytes; expected one row", place)
-        value = _json(line, place, numeral) if line.strip() else []
-        for at, row in enumerate(value if isinstance(value, list) else [value], number):
-            if not isinstance(row, dict):
-                raise UserError(f"is {quoted(row)}; expected an object for each row", place)
-            for name, cell in row.items():
-                if isinstance(cell, dict | list | bool):
-                    fault = f"{quoted(name)} is no number and no text; expected one of these"
-                    raise UserError(fault, place)
-            yield at, row
-
-
-def _json(data: bytes, place: str, numeral: type[str] | None) -> Any:
-    """Return the value of a JSON text, its numbers as ``numeral``. Raises UserError."""
-    try:
-        text = data.decode("utf-8-sig")
-        return json.loads(text, parse_float=numeral, parse_int=numeral)
-    except (ValueError, RecursionError) as error:
-        reason = getattr(error, "msg", None) or "not UTF-8 text, or nested too deeply"
-        raise UserError(f"is not JSON: {reason}; expected an object for each row", place) from None
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line.decode("utf-8-sig"), parse_float=numeral, parse_int=numeral)
+        except (ValueError, RecursionError):
+            row = None
+        if not isinstance(row, dict) or any(isinstance(x, dict | list | bool) for x in row.values()):
+            fault = f"is {quoted(line[:99].decode(errors='replace'))}; expected a JSON object"
+            raise UserError(f"{fault} of numbers and texts for each row", f"{where}, line {number}")
+        yield number, row
 
 
 # -- writing
@@ -300,6 +270,4 @@ def _cells(column: Column) -> list[Any]:
     """Return a column as a list, None for a number that is none."""
     if isinstance(column, np.ndarray) and column.dtype.kind == "f":
         return [None if math.isnan(x) else x for x in column.tolist()]
-    if hasattr(column, "to_list"):
-        return column.to_list()  # type: ignore[no-any-return]
     return column.tolist() if isinstance(column, np.ndarray) else list(column)
