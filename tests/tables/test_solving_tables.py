@@ -109,7 +109,11 @@ def test_bad_rows_do_not_stop_the_others(
         ({"IB": "-3"}, "IB", "= -3 is not above 0"),
         ({"M": "5"}, "M", "= 5 is neither 6 nor 4 (point masses)"),
         ({"MA": "inf"}, "UX", "= -29.04 is not 0, and MA is infinite: a barrier rests"),
-        ({"MA": "inf", "MB": "inf", "UX": "0", "VX": "0", "VY": "0"}, "MB", "= INF is infinite, and so is MA"),
+        (
+            {"MA": "inf", "MB": "inf", "UX": "0", "VX": "0", "VY": "0"},
+            "MB",
+            "= INF is infinite, and so is MA",
+        ),
     ],
 )
 def test_scenes_that_are_no_impact_are_bad_rows(

@@ -198,20 +198,21 @@ class Case:
         omitted = absent if is_complete else []
         texts |= {name: POINT_DEFAULTS[name] for name in omitted}
         remarks += [*across, *share, *_implausible(amounts, sizes, given, shown)]
+        about = {name: written.get(name, "") for name in ("title", "case", "examiner", "date")}
         return cls(
             amounts,
             shown,
             {name: texts[name] for name in SCENE if name in texts},
             tuple(remarks),
-            *(written.get(name, "") for name in ("title", "case", "examiner", "date")),
-            written,
-            source,
-            sources,
-            sizes,
-            tuple(derived),
-            tuple(omitted),
-            places,
-            view,
+            written=written,
+            source=source,
+            sources=sources,
+            sizes=sizes,
+            derived=tuple(derived),
+            omitted=tuple(omitted),
+            places=places,
+            defaults=view,
+            **about,
         )
 
     def with_(
@@ -355,7 +356,9 @@ def _typed(entries: Mapping[str, Amount]) -> tuple[dict[str, str], list[str]]:
     if not math.isfinite(critical):
         return texts, []
     friction = share * critical * (-1 if values.get("gt", 0) > 0 else 1)  # line 400 turns it again
-    remark = f"MU = {friction:.6g} is {100 * share:g} % of the critical friction {abs(critical):.6g}"
+    remark = (
+        f"MU = {friction:.6g} is {100 * share:g} % of the critical friction {abs(critical):.6g}"
+    )
     return {**texts, "MU": to_text(friction)}, [remark]
 
 

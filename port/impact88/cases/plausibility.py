@@ -65,7 +65,9 @@ def implausible(
         mass, inertia, heading = (values.get(f"{kind}{vehicle}") for kind in "MIT")
         if view.units and mass is not None and inertia is not None:
             usual = usual_inertia(mass, sizes.get(vehicle, ()), view)
-            is_off = (inertia < usual / MAX_RATIO) | ((inertia > usual * MAX_RATIO) & (inertia < inf))
+            is_off = (inertia < usual / MAX_RATIO) | (
+                (inertia > usual * MAX_RATIO) & (inertia < inf)
+            )
             words = f'far from what I{vehicle} = "estimate" gives'
             yield Remark(f"I{vehicle}", is_off & has_size & is_car(weight(mass, view)), words)
         if heading is not None and vehicle in courses:
@@ -92,5 +94,7 @@ def impossible(values: Mapping[str, Any]) -> Iterator[Remark]:
     for name, inertia in RESISTANCES.items():
         is_fixed = values.get(inertia, 0.0) == inf
         moves = values.get(name, 0.0) != 0
-        yield Remark(name, is_fixed & moves, f"is not 0, and {inertia} is infinite: a barrier rests")
+        yield Remark(
+            name, is_fixed & moves, f"is not 0, and {inertia} is infinite: a barrier rests"
+        )
     yield Remark("MB", (values["MA"] == inf) & (values["MB"] == inf), "is infinite, and so is MA")

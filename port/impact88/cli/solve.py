@@ -3,7 +3,7 @@ impact88 solve crash.toml --set MU="+- .1"    a value changed, or known within l
 impact88 solve crash.toml --full              every result
 impact88 solve cases.csv -o results.csv       each row of a table
 impact88 solve crash.toml --sweep MU=0:1:51 --outputs DVA,LOSS
-impact88 solve cases.xlsx -o results.parquet --scene common.toml --errors bad.csv
+impact88 solve cases.xlsx -o results.parquet --scene common.toml
 
 FILE.toml: a complete scene is solved forward, with 90 % intervals where it has tolerances; from
 anything else the rest is reconstructed: speeds before, coefficients, delta-V, with what was assumed
@@ -11,7 +11,7 @@ and what would help.
 
 TABLE (.csv .jsonl .parquet .xlsx; - is standard input, CSV): a column for each name of a scene,
 units in the headings (UX [mph]). Results follow; a row that cannot be used is left empty and named
-on stderr, or in the file of --errors. Parquet and Excel need pip install 'impact88[tables]'.
+on stderr. Parquet and Excel need pip install 'impact88[tables]'.
 
 exit status: 0 done; 1 no impact that physics allows, values that contradict one another, or bad
 rows; 2 bad input"""
@@ -19,7 +19,6 @@ rows; 2 bad input"""
 from __future__ import annotations
 
 from ..errors import UserError
-from ..files import display_name
 from ..names import RESULTS
 from .options import (
     CASE,
@@ -33,7 +32,6 @@ from .options import (
     input_file,
     names_of,
     option,
-    output_file,
     pairs_of,
     printing_to,
     texts,
@@ -54,10 +52,8 @@ OPTIONS = (
     choice("--arithmetic", ("float64", "applesoft"), "of a table; applesoft: the 1988 program's"),
     input_file("--scene", "FILE.toml", "values for the columns that a table lacks"),
     flag("--results-only", "leave the scene's columns out"),
-    output_file("--errors", "FILE", "write all bad rows of a table here (CSV)"),
     option("--from", dest="source", default="", choices=("toml", *FORMATS), help="format of FILE"),
     choice("--to", FORMATS, "format of the table to write"),
-    option("--encoding", default="", metavar="NAME", help="of CSV that is not UTF-8: cp1252"),
 )
 
 
@@ -102,10 +98,8 @@ def _solve_table(args: Args, is_table: bool) -> int:
             results_only=args.results_only,
             source_format=args.source,
             target_format=args.to,
-            encoding=args.encoding,
-            errors=args.errors or "",
             progress=update,
         )
     remarks = dict.fromkeys([*case.remarks, *solved.remarks])
-    say("solve", [*remarks, *solved.messages(display_name(table or ""))])
+    say("solve", [*remarks, *solved.messages()])
     return int(bool(solved.bad or solved.ended))

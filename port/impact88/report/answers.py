@@ -12,7 +12,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from .. import status
-from ..cases.case import Case, written_text
+from ..cases.case import Case
+from ..cases.plausibility import impossible
 from ..cases.scenefile import INPUTS
 from ..errors import UserError
 from ..mechanics.solve import evaluate
@@ -190,7 +191,8 @@ def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS", "fit"))
     numbers = {name: float(value) for name, value in values.items()}
     if numbers.pop("fit", 1.0) == 0:
-        raise UserError(UNUSABLE, case.source)
+        reasons = [f"{r.name} {r.words}" for r in impossible(case.numbers) if r.where]
+        raise UserError("; ".join(reasons) or UNUSABLE, case.source)
     shown = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
     absent = [name for name in names if name not in shown]
     inputs = dict.fromkeys(name for result in absent for name in lacking.get(result, ()))
@@ -265,10 +267,10 @@ def given_of(case: Case) -> tuple[Row, ...]:
     rows = []
     for name, entry in case.written.items():
         if name in INPUTS:
-            text, source = written_text(entry), case.sources.get(name, "")
-            has_unit = any(c.isalpha() or c == "%" for c in text)
+            has_unit = any(c.isalpha() or c == "%" for c in entry)
             unit = "" if has_unit else unit_of(case, name)
-            rows.append(Row(name, quantity(name).meaning, unit, text, source))
+            source = case.sources.get(name, "")
+            rows.append(Row(name, case.view.meaning(name), unit, entry, source))
     return tuple(rows)
 
 
@@ -309,7 +311,7 @@ def numbers_of(
         text, is_known = rounded(value, decimals), not math.isnan(value)
         note = clock(value) if name.startswith("PDOF") and is_known else ""
         exact = value if is_known else None
-        meaning = quantity(name).meaning
+        meaning = case.view.meaning(name)
         rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, exact, ends)
     return rows
 

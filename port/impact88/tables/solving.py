@@ -274,7 +274,9 @@ class _Rows:
         for name, (_, unit) in solver.columns.items():
             factor, offset = (float(x) for x in solver.view.map(name, unit))
             shown = self.shown[name]
-            self.values[name] = shown.copy() if factor == 1 and not offset else offset + factor * shown
+            self.values[name] = (
+                shown.copy() if factor == 1 and not offset else offset + factor * shown
+            )
             is_other |= ~np.isfinite(shown)
             if solver.is_applesoft:
                 lengths = [len(x) if isinstance(x, str) else 0 for x in self.cells(name)]
@@ -343,7 +345,9 @@ class _Rows:
         if name in solver.columns:
             factor, offset = solver.view.map(name, solver.columns[name][1])
             is_base = factor == 1 and not offset
-            texts = [x.strip().upper() if isinstance(x, str) else to_text(x) for x in self.cells(name)]
+            texts = [
+                x.strip().upper() if isinstance(x, str) else to_text(x) for x in self.cells(name)
+            ]
         else:
             is_base = True
             texts = [solver.case.texts.get(name) or POINT_DEFAULTS.get(name, "")] * self.count

@@ -229,7 +229,9 @@ def _json_rows(
             row = json.loads(line.decode("utf-8-sig"), parse_float=numeral, parse_int=numeral)
         except (ValueError, RecursionError):
             row = None
-        if not isinstance(row, dict) or any(isinstance(x, dict | list | bool) for x in row.values()):
+        if not isinstance(row, dict) or any(
+            isinstance(x, dict | list | bool) for x in row.values()
+        ):
             fault = f"is {quoted(line[:99].decode(errors='replace'))}; expected a JSON object"
             raise UserError(f"{fault} of numbers and texts for each row", f"{where}, line {number}")
         yield number, row
