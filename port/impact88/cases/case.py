@@ -284,6 +284,10 @@ class Case:
                 raise UserError(message, self.source) from None
         return pairs
 
+    def place(self, name: str) -> str:
+        """Return the place of an entry for messages: file and line, or an option."""
+        return self.places.get(name, self.source)
+
     def toml(self) -> str:
         """Return the case as a commented scene file, entries as written."""
         return write_toml({**self.view.words(), **self.written}, view=self.view)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from .. import status
 from ..cases.case import Case
-from ..cases.plausibility import impossible
 from ..cases.scenefile import INPUTS
 from ..errors import UserError
 from ..mechanics.solve import evaluate
@@ -191,8 +190,7 @@ def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS", "fit"))
     numbers = {name: float(value) for name, value in values.items()}
     if numbers.pop("fit", 1.0) == 0:
-        reasons = [f"{r.name} {r.words}" for r in impossible(case.numbers) if r.where]
-        raise UserError("; ".join(reasons) or UNUSABLE, case.source)
+        raise UserError(UNUSABLE, case.source)
     shown = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
     absent = [name for name in names if name not in shown]
     inputs = dict.fromkeys(name for result in absent for name in lacking.get(result, ()))
