@@ -38,12 +38,10 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     others = {name: value for name, value in given.items() if name not in amounts}
     if any(isinstance(value, str) for value in others.values()):
         return {**Case.of(others, "values").entries, **amounts}
-    return {name: _as_amount(name, value) for name, value in given.items()}
+    return {name: amounts.get(name) or _as_amount(name, value) for name, value in given.items()}
 
 
 def _as_amount(name: str, value: Any) -> Amount:
-    if isinstance(value, Amount):
-        return value
     try:
         number = float(value)
     except (TypeError, ValueError):
