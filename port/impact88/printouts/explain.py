@@ -17,7 +17,8 @@ from ..program.run import run
 from .findings import Finding, Kind, Verification
 from .page import INPUTS, RESULTS
 from .reader import read_printouts
-from .search import FINAL_SPINS, opposite, printed_fields
+from .numerals import opposite
+from .search import printed_fields
 
 MAX_UNEXPLAINED = 0.25
 """Fraction of the numbers that differ which a cause may leave."""
@@ -52,8 +53,6 @@ def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]
     findings = [finding for finding in verification.findings if finding.kind is Kind.NUMBER]
     labels = [finding for finding in verification.findings if finding.kind is Kind.LABEL]
     names = [finding.name for finding in findings if finding.name in RESULTS]
-    if {FINAL_SPINS} == {tuple(finding.name for finding in findings if not finding.printed)}:
-        return "computed with M = 4, for which the program prints no final spins (line 350)"
     if len(names) >= MIN_NUMBERS and verification.scene:
         read = {name: verification.numbers[name].read for name in names}
         for cause, fields, error in _causes(verification):

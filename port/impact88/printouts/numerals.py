@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from decimal import Decimal
 from functools import lru_cache
 from itertools import product
@@ -18,9 +17,13 @@ PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0
 """A number as Applesoft prints it."""
 TYPED = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?")
 """A number as it can be typed."""
-RETYPED = re.compile(r"^[-+]?0.|[.][0-9]*0$|^[-+]?[.]00|^[+]|[.]$|^-?[0-9]{10}")
+RETYPED = re.compile(r"^[-+]0|^0.|[.][0-9]*0$|^[-+]?[.]00|^[+]|[.]$|^-?[0-9]{10}")
 """Marks of a number that people wrote: a zero or plus sign in front, zeros behind, no exponent."""
+BARRED_ZERO = re.compile(r".{1,2}\)")
+"""A zero with a bar, as readers tear it into two or three characters."""
 NUMBER_CHARS = "0123456789.-"
+MAX_DIGITS = 9
+"""Digits that Applesoft prints."""
 MAX_READINGS = 100
 """Texts that a damaged number may be: the cheapest ones."""
 _RADIANS = rounded(divide(decimaltext.number("3.14159265"), decimaltext.number("180")))
@@ -63,7 +66,7 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
     except ArithmeticError:
         return ()
     digits = len(value.as_tuple().digits)
-    last_place = Decimal(1).scaleb(value.adjusted() - 8) if digits == 9 else Decimal(0)
+    last_place = Decimal(1).scaleb(value.adjusted() - 8)
     steps = [Decimal(k) for k in (1, 2, 3)] + [Decimal(k) / 10 for k in range(1, 10)]
     shorter = [Decimal(f"{value:.{k}E}") for k in range(digits - 1)]
     texts = [
@@ -74,9 +77,8 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
     plain = f"{value:f}"
     texts += [f"{value.normalize():f}"]
     texts += [plain + "." * ("." not in plain) + "0" * k for k in (1, 2, 3)]
-    texts += [
-        f"{(value + sign * step * last_place).normalize():f}" for step in steps for sign in (1, -1)
-    ]
+    for step in steps if digits == MAX_DIGITS else ():
+        texts += [f"{(value + sign * step * last_place).normalize():f}" for sign in (1, -1)]
     by_bits: dict[bytes, str] = {}
     for text in [*texts, printed]:
         short = re.sub(r"^(-?)0\.", r"\1.", text)
@@ -84,6 +86,11 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
         if stored and stored[1] == printed:
             by_bits.setdefault(stored[0], short)
     return tuple(by_bits.values())
+
+
+def opposite(text: str) -> str:
+    """Return a number's text with the other sign."""
+    return text[1:] if text.startswith("-") else "-" + text.removeprefix("+")
 
 
 def is_same_value(first: str, second: str) -> bool:
@@ -116,16 +123,18 @@ def readings(chars: str) -> dict[str, float]:
         if char == "+":
             options = [("", RESPELLED), ("+", RESPELLED)]
         elif not options or char == "E":
-            options += [(digit, ALIKE) for digit in NUMBER_CHARS if char in LOOKALIKES[digit]]
-            if char == "?":
-                options += [(digit, ALIKE) for digit in "0123456789" if digit not in dict(options)]
-            else:  # a mark is rather dirt, a letter rather a digit
-                options.append(("", ALIKE / 2 if not char.isalnum() else 2 * ALIKE))
+            is_mark = not char.isalnum()  # rather a point or sign than a digit or dirt
+            for other in NUMBER_CHARS:
+                if char in LOOKALIKES[other]:
+                    options.append((other, ALIKE / 2 if is_mark and other in ".-" else ALIKE))
+                elif char == "?":
+                    options.append((other, ALIKE if other.isdigit() else 2 * ALIKE))
+            options.append(("", ALIKE if is_mark else 2 * ALIKE))
         elif char in ".-":
             options.append(("", 3 * ALIKE))
         longer = ((text + one, cost + more) for (text, cost), (one, more) in product(ways, options))
         ways = sorted(longer, key=lambda way: way[1])[:MAX_READINGS]
-    texts: dict[str, float] = {}
+    texts: dict[str, float] = {"0": ALIKE} if BARRED_ZERO.fullmatch(chars) else {}
     for text, cost in ways:
         printed = as_printed(text)
         if PRINTED.fullmatch(printed):
@@ -133,12 +142,13 @@ def readings(chars: str) -> dict[str, float]:
     return texts
 
 
-def slips(text: str) -> Iterator[tuple[str, float]]:
-    """Yield the printed numbers one slip from another, with the cost of the slip.
+@lru_cache(maxsize=1000)
+def slips(text: str) -> list[tuple[str, float]]:
+    """Return the printed numbers one slip from another, with the cost of the slip.
 
     A slip replaces, loses, adds or exchanges characters.
     """
-    seen = {text}
+    costs: dict[str, float] = {}
     for k in range(len(text) + 1):
         before, char, behind = text[:k], text[k : k + 1], text[k + 1 :]
         variants = [(before + new + char + behind, WRONG + RESPELLED) for new in NUMBER_CHARS]
@@ -147,10 +157,6 @@ def slips(text: str) -> Iterator[tuple[str, float]]:
             variants.append((before + behind, WRONG + RESPELLED))
             variants.append((before + behind[:1] + char + behind[1:], WRONG + RESPELLED))
         for variant, cost in variants:
-            if (
-                variant not in seen
-                and PRINTED.fullmatch(variant)
-                and as_printed(variant) == variant
-            ):
-                seen.add(variant)
-                yield variant, cost
+            if PRINTED.fullmatch(variant) and as_printed(variant) == variant != text:
+                costs.setdefault(variant, cost)
+    return [*costs.items()]

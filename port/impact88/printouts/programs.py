@@ -30,12 +30,17 @@ class Outcomes(NamedTuple):
     """What a program prints for scenes: numbers, a row a scene and a column a name of `NAMES`, ""
     for none; and the message that ends each, "" for a normal end."""
 
-    fields: NDArray[np.str_]
-    endings: Sequence[str]
+    fields: NDArray[np.bytes_]
+    endings: NDArray[np.str_]
 
-    def printed(self, name: str) -> NDArray[np.str_]:
+    def printed(self, name: str) -> NDArray[np.bytes_]:
         """Return a number of each scene."""
         return self.fields[:, NAMES.index(name)]
+
+    def texts(self, row: int) -> dict[str, str]:
+        """Return the numbers of a scene, by name."""
+        texts = [text.decode() for text in self.fields[row].tolist()]
+        return {name: text for name, text in zip(NAMES, texts, strict=True) if text}
 
 
 class Listing:
@@ -56,7 +61,7 @@ class Listing:
         """
         results = replay(columns)
         endings = np.where(results.zero_determinant, ZERO_DETERMINANT, results.error)
-        return Outcomes(results.fields.astype(str), endings.tolist())
+        return Outcomes(results.fields, endings)
 
     def spellings(self, name: str, printed: str) -> tuple[str, ...]:
         """Return texts that may have been typed for a printed input, the likeliest first."""
@@ -88,7 +93,7 @@ class CopyListing(Listing):
             texts = match.groupdict() if match else {}
             rows.append([texts.get(name) or "" for name in NAMES])
         endings = [ending[0] if (ending := ENDING.search(page)) else "" for page in pages]
-        return Outcomes(np.array(rows), endings)
+        return Outcomes(np.array(rows, bytes), np.array(endings))
 
     @cached_property
     def _layouts(self) -> list[re.Pattern[str]]:
@@ -126,7 +131,7 @@ class CopyListing(Listing):
         typed = float(printed) / self._factors[name]
         texts = [f"{float(f'{typed:.{k}g}'):.{MAX_DIGITS}G}" for k in range(1, MAX_DIGITS + 1)]
         scene = {key: [text] * len(texts) for key, text in sample(1).items()}
-        same = self.run({**scene, name: texts}).printed(name) == printed
+        same = self.run({**scene, name: texts}).printed(name) == printed.encode()
         return tuple(text for text, is_same in zip(texts, same, strict=True) if is_same)
 
     def layout(self, scene: Mapping[str, str]) -> Reading | None:

@@ -11,8 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from heapq import nsmallest
-from itertools import accumulate, groupby, pairwise, product
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -37,8 +36,8 @@ OWNED = re.compile(
     r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:])"
 )
 """A number in one piece behind a label."""
-CUT = re.compile(r"^-?0[0-9]|\.$")
-"""Ends of a number that nobody prints or types."""
+CUT = re.compile(r"\.$")
+"""The end of a number that nobody prints."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
@@ -47,16 +46,6 @@ MIN_NUMBERS = 3
 """Numbers, behind two letters of labels each, that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
-MAX_ANGLE_GLYPHS = 60
-"""Characters of the row of angles that are read."""
-MAX_NUMBER = 16
-"""Characters of a damaged angle."""
-MAX_PARTS = 10
-"""Readings of each of the five."""
-MAX_ANGLE_ROWS = 100
-"""Ways to read the row of angles."""
-Way = tuple[float, tuple[str, ...]]
-"""The first angles of a row, and their cost."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
 TWINS = {name: name + "F" for name in NAMES if name + "F" in NAMES}
@@ -111,8 +100,6 @@ class Reading:
         The whole text; offsets of glyphs refer to it.
     slots : dict of str to Slot
         What stands in the place of each number, and of the two replies.
-    angle_rows : list of (texts, cost)
-        What the row of angles may be.
     chars : dict of int to Glyph
         The glyph of each cell of a word.
     other_labels : dict of int to list of Glyph
@@ -131,7 +118,6 @@ class Reading:
 
     text: str
     slots: dict[str, Slot] = field(default_factory=dict)
-    angle_rows: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
     chars: dict[int, Glyph] = field(default_factory=dict)
     other_labels: dict[int, Sequence[Glyph]] = field(default_factory=dict)
     foreign: list[list[Glyph]] = field(default_factory=list)
@@ -245,6 +231,8 @@ class _Reader:
         used = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
         owners = {_owner(anchor.label) for anchor in anchors}
         used |= {j for name, j in _SLOT_CELLS.items() if name in owners}
+        if not PROMPT.search(chars_of(glyphs)):
+            used |= {_SLOT_CELLS[reply] for reply in REPLIES}
         before = Anchor(FIRST, "", 0, 0)
         for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
             cells = [j for j in _cells_between(before.label, anchor.label) if j not in used]
@@ -299,7 +287,7 @@ class _Reader:
     def _count_owned(self, glyphs: Sequence[Glyph], before: Label, behind: Label) -> int:
         """Return how many glyphs are the number, or the numbers, of the label before them."""
         if before.row == HEADING:
-            return len(glyphs) if behind.name == "UX" else _end_of_line(glyphs, len(ANGLES))
+            return _end_of_line(glyphs, len(ANGLES))
         if before.row in PROMPTS:
             is_next = behind.name in ("REPLY_B", "MA") and behind.row == before.row + 1
             return len(glyphs) if is_next or self.reading.ending else _end_of_line(glyphs, 1)
@@ -403,18 +391,17 @@ class _Reader:
         """Split the row of angles, which are read only if there are five."""
         reading = self.reading
         if row := reading.slots.pop("ANGLES", None):
-            words = [*split_at_gaps(row.glyphs)]
+            words = [*_angle_words(row.glyphs)]
             with_digits = [word for word in words if re.search("[0-9]", chars_of(word))]
             numbers = [word for word in words if readings(chars_of(word))]
-            five = next((some for some in (with_digits, numbers) if len(some) == len(ANGLES)), None)
-            others = [word for word in words if five and word not in five]
-            if five and not any("-" in chars_of(word) for word in others):  # no sign apart
-                reading.slots |= {
-                    name: Slot(word, row.label) for name, word in zip(ANGLES, five, strict=True)
-                }
-                reading.foreign += others
-                words = five
-            reading.angle_rows = angle_rows([glyph for word in words for glyph in word])
+            for five in (with_digits, numbers):
+                if len(five) == len(ANGLES):
+                    slots = [
+                        Slot(word, row.label, any(glyph.gap for glyph in word[1:])) for word in five
+                    ]
+                    reading.slots |= dict(zip(ANGLES, slots, strict=True))
+                    reading.foreign += [word for word in words if word not in five]
+                    break
         repeated = reading.repeated
         for k, (name, slot) in enumerate([*repeated]):
             words = [*split_at_gaps(slot.glyphs)] if name == "ANGLES" else []
@@ -423,6 +410,23 @@ class _Reader:
                     (angle, Slot(word, slot.label))
                     for angle, word in zip(ANGLES, words, strict=True)
                 ]
+
+
+def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
+    """Yield the words of the row of angles: a sign before a blank is the next word's, and one
+    behind a digit begins a word."""
+    sign: list[Glyph] = []
+    for word in split_at_gaps(row):
+        text = chars_of(word)
+        if text in "-~":
+            sign = [*sign, *word]
+            continue
+        cuts = [0, *(match.end() for match in re.finditer("[0-9](?=-)", text)), len(word)]
+        for a, b in pairwise(cuts):
+            yield [*sign, *word[a:b]]
+            sign = []
+    if sign:
+        yield sign
 
 
 @lru_cache(maxsize=len(NAMES))
@@ -543,39 +547,3 @@ def _is_whole(glyphs: Sequence[Glyph], members: Sequence[int]) -> bool:
     a, b = members[0], members[-1] + 1
     is_start = not a or glyphs[a].gap > 0 or glyphs[a - 1].char not in "0123456789."
     return is_start and (b == len(glyphs) or glyphs[b].gap > 0 or not glyphs[b].char.isdigit())
-
-
-def angle_rows(row: Sequence[Glyph]) -> list[tuple[tuple[str, ...], float]]:
-    """Return the ways to read the row of angles as five numbers, the cheapest first.
-
-    Words are taken one by one; damaged ones may be cut in two, joined or, at the ends, passed over.
-    """
-    row = row[:MAX_ANGLE_GLYPHS]
-    words = [chars_of(word) for word in split_at_gaps(row)]
-    ends = [0, *accumulate(map(len, words))]
-    damaged = [not PRINTED.fullmatch(as_printed(word)) for word in words]
-    cut_costs = dict.fromkeys(ends, 0.0)
-    for k, is_damaged in enumerate(damaged):
-        for at in range(ends[k] + 1, ends[k + 1]) if is_damaged else ():
-            cut_costs[at] = ALIKE + WRONG * (row[at].char != "-")
-    joints = {end for k, end in enumerate(ends[1:-1]) if damaged[k] or damaged[k + 1]}
-    ways: dict[int, list[Way]] = {end: [(WRONG * k, ())] for k, end in enumerate(ends)}
-    for _ in ANGLES:
-        longer: dict[int, list[Way]] = {}
-        for a, b in product(ways, cut_costs):
-            crossed = [end for end in ends if a < end < b]
-            if not a < b <= a + MAX_NUMBER or not joints.issuperset(crossed):
-                continue
-            more = cut_costs[b] + WRONG * len(crossed)
-            texts = [*readings(chars_of(row[a:b])).items()][:MAX_PARTS]
-            longer.setdefault(b, []).extend(
-                (head + cost + more, (*angles, text))
-                for (head, angles), (text, cost) in product(ways[a], texts)
-            )
-        ways = {at: nsmallest(MAX_ANGLE_ROWS, some) for at, some in longer.items()}
-    rows: dict[tuple[str, ...], float] = {}
-    for k, end in enumerate(ends):
-        for cost, angles in ways.get(end, ()):
-            total = cost + WRONG * (len(words) - k)
-            rows[angles] = min(total, rows.get(angles, total))
-    return sorted(rows.items(), key=lambda item: item[1])[:MAX_ANGLE_ROWS]

@@ -1,8 +1,9 @@
 """The scene that a page comes from: combinations of what its inputs may be, replayed bit for bit.
 
 A scene costs what its inputs do, plus what it costs that each result it prints is the one that was
-read. The scene as read is tried first; where it leaves a result unexplained, the cheapest
-combinations of readings; then slips in single inputs of the best ones, while they explain more.
+read: the more, the further off it is. The scene as read is tried first; where it leaves a result
+unexplained, the cheapest combinations of readings; then slips in single inputs of the best scenes,
+while they explain more.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
-from .numerals import TYPED, readings, slips, stored_and_printed
+from .numerals import TYPED, opposite, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
@@ -26,13 +28,20 @@ MAX_CANDIDATES = 10_000
 MAX_OPTIONS = 40
 """Texts that an input may be."""
 BEST = 3
-"""Scenes from which the search for slips goes on, and its rounds."""
+"""Scenes from which the search for slips goes on."""
+MAX_ROUNDS = 4
+"""Slips that a scene may have."""
 FINAL_SPINS = ("WAF", "WBF")
 
 Texts = dict[str, str]
-Option = tuple[tuple[str, ...], tuple[str, ...], float]
-"""Printed texts and typed texts of an input, or of the five angles, and their cost."""
-Columns = dict[tuple[str, ...], list[Option]]
+
+
+class Option(NamedTuple):
+    """What an input may be: its printed and its typed text, and their cost."""
+
+    printed: str
+    typed: str
+    cost: float
 
 
 class Candidate(NamedTuple):
@@ -53,7 +62,7 @@ class Recovered:
     candidate : Candidate
         Its inputs as believed.
     mismatch : float
-        What its results cost.
+        The cost of its results.
     scene : dict of str to str
         The scene as typed.
     fields : dict of str to str
@@ -72,11 +81,6 @@ class Recovered:
     def cost(self) -> float:
         """Cost of inputs and results."""
         return self.candidate.cost + self.mismatch
-
-
-def opposite(text: str) -> str:
-    """Return a number's text with the other sign."""
-    return text[1:] if text.startswith("-") else "-" + text.removeprefix("+")
 
 
 def scene_name(name: str) -> str:
@@ -103,43 +107,28 @@ def find_scenes(
     tuple
         The scenes, none where inputs are missing; and the names of these.
     """
-    columns: Columns = {
-        (name,): _options(reading, name, program) for name in INPUTS if name not in ANGLES
-    }
-    columns[ANGLES] = [
-        (row, typed, cost)
-        for row, cost in reading.angle_rows
-        if all(typed := _typed_angles(row, program))
-    ]
-    for names, options in columns.items():
-        texts = tuple(given.get(scene_name(name), "") for name in names)
-        stored = [stored_and_printed(text, names is ANGLES) for text in texts if text]
-        if not options and len(stored) == len(names):
-            options.append((tuple(one[1] for one in stored if one), texts, 0.0))
-    if missing := [name for names, options in columns.items() for name in names if not options]:
+    columns = {name: _options(reading, name, given, program) for name in INPUTS}
+    if missing := [name for name, options in columns.items() if not options]:
         return [], missing
-    has_spins = any(name in reading.slots for name in FINAL_SPINS)
-    ms = [("6", 0.0), ("4", CONTRADICTED)] if has_spins else [("4", 0.0), ("6", ALIKE)]
+    search = _Search(reading, given, program)
+    has_spins = all(name in reading.slots for name in FINAL_SPINS)  # M = 4 prints none
+    ms = [("6", 0.0)] if has_spins else [("4", 0.0), ("6", ALIKE)]
     if "M" in given:
         ms = [(given["M"], 0.0)]
-    compared = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
-    expected = {name: reading.readings(name) for name in compared}
-    first = {names: options[:1] for names, options in columns.items()}
-    best = replay_candidates([*_combinations(first, ms, len(ms))], expected, program)
+    best = search.replay(_combinations({n: column[:1] for n, column in columns.items()}, ms, len(ms)))
     if best[0].mismatch >= CONTRADICTED:
-        best = replay_candidates([*_combinations(columns, ms, MAX_CANDIDATES)], expected, program)
+        best = search.replay(_combinations(columns, ms, MAX_CANDIDATES))
     as_read = best[0]
-    clean = {
-        name: slot.text for name, slot in reading.slots.items() if name in INPUTS and slot.is_clean
-    }
-    for _ in range(BEST):
+    for _ in range(MAX_ROUNDS):
         if best[0].mismatch < CONTRADICTED:
             break
-        edits = [*_edits(best[0].candidate, clean, program)]
-        more = replay_candidates(edits, expected, program)
-        if more[0].cost >= best[0].cost:
+        for base in best:
+            slipped = search.replay(search.edits(base.candidate))
+            if slipped and slipped[0].cost < best[0].cost:
+                break
+        else:
             break
-        best = sorted([*best, *more], key=lambda found: found.cost)[:BEST]
+        best = sorted([*best, *slipped], key=lambda scene: scene.cost)[:BEST]
     # slips are believed only where they explain most of what differs
     if 2 * best[0].mismatch > as_read.mismatch:
         return [as_read], []
@@ -147,127 +136,153 @@ def find_scenes(
     return [scene for scene in best if scene.cost <= limit], []
 
 
-def _typed_angles(row: Sequence[str], program: Listing) -> tuple[str, ...]:
-    pairs = zip(ANGLES, row, strict=True)
-    return tuple(next(iter(program.spellings(name, text)), "") for name, text in pairs)
-
-
-def _options(reading: Reading, name: str, program: Listing) -> list[Option]:
+def _options(
+    reading: Reading, name: str, given: Mapping[str, str], program: Listing
+) -> list[Option]:
     """Return what an input may be, the cheapest first: as printed, and as typed at the prompt."""
     texts = dict(reading.readings(name))
     reply = reading.replies.get(name, "")
-    typed = stored_and_printed(reply) if TYPED.fullmatch(reply) else None
-    more = ALIKE + LOST * bool(reading.slots.get(name))
-    for text in [typed[1]] if typed else readings(reply):
-        texts[text] = min(texts.get(text, more), more)
+    entry = stored_and_printed(reply) if TYPED.fullmatch(reply) else None
+    doubt = ALIKE + LOST * (name in reading.slots)
+    for text in [entry[1]] if entry else readings(reply):
+        texts[text] = min(texts.get(text, doubt), doubt)
+    given_text = given.get(scene_name(name), "")
+    if given_text and not texts and (entry := stored_and_printed(given_text, name in ANGLES)):
+        reply = given_text
+        texts[entry[1]] = 0.0
     options: list[Option] = []
     for text, cost in sorted(texts.items(), key=lambda item: item[1])[:MAX_OPTIONS]:
-        if typed and typed[1] == text:
-            options.append(((text,), (reply,), cost))
-        elif spelled := program.spellings(name, text):
-            options.append(((text,), (spelled[0],), cost))
+        is_typed = entry is not None and entry[1] == text
+        for typed in (reply,) if is_typed else program.spellings(name, text)[:1]:
+            options.append(Option(text, typed, cost))
     return options
 
 
 def _combinations(
-    columns: Columns, ms: Sequence[tuple[str, float]], count: int
-) -> Iterator[Candidate]:
-    """Yield the cheapest combinations of options."""
+    columns: Mapping[str, Sequence[Option]], ms: Sequence[tuple[str, float]], count: int
+) -> list[Candidate]:
+    """Return the cheapest combinations of options."""
     costs = np.array([cost for _, cost in ms])
     ways = np.arange(len(ms))[:, None]
     for options in columns.values():
-        sums = np.add.outer(costs, [cost for *_, cost in options]).ravel()
+        sums = np.add.outer(costs, [option.cost for option in options]).ravel()
         order = sums.argsort(kind="stable")[:count]
         costs = sums[order]
         ways = np.column_stack([ways[order // len(options)], order % len(options)])
+    candidates = []
     for cost, (m, *way) in zip(costs.tolist(), ways.tolist(), strict=True):
-        printed: Texts = {}
-        typed: Texts = {}
-        for (names, options), k in zip(columns.items(), way, strict=True):
-            printed |= dict(zip(names, options[k][0], strict=True))
-            typed |= dict(zip(names, options[k][1], strict=True))
-        yield Candidate(printed, typed, ms[m][0], cost)
+        options = [column[k] for column, k in zip(columns.values(), way, strict=True)]
+        printed = {name: option.printed for name, option in zip(columns, options, strict=True)}
+        typed = {name: option.typed for name, option in zip(columns, options, strict=True)}
+        candidates.append(Candidate(printed, typed, ms[m][0], cost))
+    return candidates
 
 
-def _edits(candidate: Candidate, clean: Mapping[str, str], program: Listing) -> Iterator[Candidate]:
-    """Yield a scene with one input typed otherwise that prints alike, or with one slip in it.
-
-    A number that was read cleanly is contradicted by a slip in it.
-    """
-    printed, typed, m, cost = candidate
-    for name, text in printed.items():
-        texts = [*program.spellings(name, text)]
-        if name == "MUP":  # line 400 turns its sign, and -10 printed of a typed 10 is no pivot
-            texts.append(opposite(typed[name]))
-        for rank, other in enumerate(texts):
-            yield Candidate(printed, {**typed, name: other}, m, cost + PASSED * (1 + rank / 9))
-        read = clean.get(name, text)
-        for other, more in chain([(read, 0.0)], slips(text), slips(read)):
-            total = cost + more + CONTRADICTED * (name in clean and other != read)
-            yield Candidate({**printed, name: other}, {**typed, name: other}, m, total)
-
-
-def replay_candidates(
-    candidates: Sequence[Candidate],
-    expected: Mapping[str, Mapping[str, float]],
-    program: Listing,
-) -> list[Recovered]:
-    """Return the best candidates, replayed, the cheapest first.
+class _Search:
+    """Replay of candidates for the scene of a page.
 
     Parameters
     ----------
-    candidates : sequence of Candidate
-        Scenes.
-    expected : mapping of str to mapping of str to float
-        What each result may be, and the cost of each; an empty one for a result not read.
+    reading : Reading
+        The page.
+    given : mapping of str to str
+        Inputs known from elsewhere.
     program : Listing
         The program.
     """
-    columns = {
-        name: [candidate.typed[name] for candidate in candidates]
-        for name in INPUTS
-        if name != "MUP"
-    }
-    columns["M"] = [candidate.M for candidate in candidates]
-    mu = np.array([candidate.typed["MUP"] for candidate in candidates], dtype="U40")
-    wanted = np.array([candidate.printed["MUP"] for candidate in candidates])
-    run = program.run({**columns, "MU": mu.tolist()})
-    turned = (run.printed("MUP") != wanted) & (wanted != "0") & (run.printed("MUP") != "")
-    if turned.any():
-        mu[turned] = [opposite(text) for text in mu[turned].tolist()]
-        run = program.run({**columns, "MU": mu.tolist()})
-    mismatch = CONTRADICTED * ((run.printed("MUP") != wanted) & (run.printed("MUP") != ""))
-    for name, costs in expected.items():
-        texts, back = np.unique(run.printed(name), return_inverse=True)
-        mismatch += np.array([_result_cost(text, costs) for text in texts.tolist()])[back]
-    total = mismatch + np.array([candidate.cost for candidate in candidates])
-    return [
-        _recovered(candidates[k], float(mismatch[k]), str(mu[k]), run, k)
-        for k in np.argsort(total, kind="stable")[:BEST].tolist()
-    ]
+
+    def __init__(self, reading: Reading, given: Mapping[str, str], program: Listing) -> None:
+        self.program = program
+        self.read = [n for n in INPUTS if n in reading.slots or scene_name(n) not in given]
+        names = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
+        self.expected = {name: reading.readings(name) for name in names}
+        self.slots = reading.slots
+
+    def edits(self, candidate: Candidate) -> list[Candidate]:
+        """Return a scene with one input typed otherwise that prints alike, or with one slip in it.
+
+        A number that was read cleanly is contradicted by a slip in it.
+        """
+        edits = []
+        printed, typed, m, cost = candidate
+        for name in self.read:
+            text = printed[name]
+            texts = [*self.program.spellings(name, text)]
+            if name == "MUP":  # -10 printed of a typed 10 is no pivot
+                texts.append(opposite(typed[name]))
+            for rank, spelled in enumerate(texts):
+                doubt = PASSED * (1 + rank / 9)
+                edits.append(Candidate(printed, {**typed, name: spelled}, m, cost + doubt))
+            slot = self.slots.get(name)
+            is_clean = slot is not None and slot.is_clean
+            read = slot.text if slot else text
+            ways = [(read, 0.0)] if is_clean else []
+            for slip, doubt in chain(ways, slips(text), slips(read)):
+                doubt += CONTRADICTED * (is_clean and slip != read)
+                change = {name: slip}
+                edits.append(Candidate(printed | change, typed | change, m, cost + doubt))
+        return edits
+
+    def replay(self, candidates: list[Candidate]) -> list[Recovered]:
+        """Return the best candidates, replayed, the cheapest first.
+
+        Line 400 may turn the sign of MU: where another is printed than was read, it is typed
+        the other way.
+        """
+        run = self.program.run(_columns(candidates))
+        printed = run.printed("MUP")
+        read = np.array([candidate.printed["MUP"] for candidate in candidates], printed.dtype)
+        turned = np.flatnonzero((printed != read) & (read != b"0") & (printed != b"")).tolist()
+        for k in turned:
+            typed = candidates[k].typed
+            typed = {**typed, "MUP": opposite(typed["MUP"])}
+            candidates[k] = candidates[k]._replace(typed=typed)
+        if turned:
+            other = self.program.run(_columns([candidates[k] for k in turned]))
+            run.fields[turned], run.endings[turned] = other
+        printed = run.printed("MUP")
+        mismatch = CONTRADICTED * ((printed != read) & (printed != b""))
+        for name, costs in self.expected.items():
+            mismatch += _result_costs(run.printed(name), costs)
+        total = mismatch + np.array([candidate.cost for candidate in candidates])
+        return [
+            _scene_of(candidates[k], float(mismatch[k]), run, k)
+            for k in np.argsort(total, kind="stable")[:BEST].tolist()
+        ]
 
 
-def _result_cost(text: str, costs: Mapping[str, float]) -> float:
-    """Return what it costs that the program prints a result, "" for none."""
-    if costs:
-        return costs.get(text, CONTRADICTED)
-    return LOST if text else 0.0
+def _columns(candidates: Sequence[Candidate]) -> dict[str, list[str]]:
+    """Return the scenes of candidates as columns."""
+    columns = {scene_name(name): [one.typed[name] for one in candidates] for name in INPUTS}
+    return {**columns, "M": [one.M for one in candidates]}
 
 
-def _recovered(
-    candidate: Candidate, mismatch: float, mu: str, outcomes: Outcomes, k: int
-) -> Recovered:
-    texts = zip(NAMES, outcomes.fields[k].tolist(), strict=True)
-    fields = {name: text for name, text in texts if text}
-    scene = {name: candidate.typed[name] for name in INPUTS if name != "MUP"}
-    scene |= {"MU": mu, "M": candidate.M}
-    return Recovered(candidate, mismatch, scene, fields, outcomes.endings[k])
+def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> NDArray[np.float64]:
+    """Return the cost of each text that the program prints for a result, b"" for none.
+
+    Another number than was read costs up to twice `CONTRADICTED`, in proportion to their distance.
+    """
+    if not costs:
+        return np.where(printed == b"", 0.0, LOST)
+    numbers = np.where(printed == b"", b"nan", printed).astype(float)
+    read = float(next(iter(costs)))
+    sizes = np.abs(numbers) + abs(read)
+    distances = np.divide(np.abs(numbers - read), sizes, out=np.zeros(len(sizes)), where=sizes > 0)
+    total: NDArray[np.float64] = CONTRADICTED * (1 + np.nan_to_num(distances, nan=1.0))
+    for text, cost in costs.items():
+        total[printed == text.encode()] = cost
+    return total
+
+
+def _scene_of(candidate: Candidate, mismatch: float, run: Outcomes, k: int) -> Recovered:
+    """Return a candidate with what the program prints for it."""
+    scene = {scene_name(name): text for name, text in candidate.typed.items()} | {"M": candidate.M}
+    return Recovered(candidate, mismatch, scene, run.texts(k), str(run.endings[k]))
 
 
 def printed_fields(scene: Mapping[str, str]) -> Texts:
     """Return the numbers that the program prints for a scene, by name."""
-    texts = Listing().run({name: [text] for name, text in scene.items()}).fields[0].tolist()
-    return {name: text for name, text in zip(NAMES, texts, strict=True) if text}
+    return Listing().run({name: [text] for name, text in scene.items()}).texts(0)
 
 
 def unseen_digits(recovered: Recovered, program: Listing) -> dict[str, int]:
@@ -295,5 +310,5 @@ def unseen_digits(recovered: Recovered, program: Listing) -> dict[str, int]:
                 names.append(name)
                 scenes.append({**recovered.scene, name: other})
     run = program.run({name: [scene[name] for scene in scenes] for name in recovered.scene})
-    same = np.all([run.printed(n) == recovered.fields.get(n, "") for n in RESULTS], axis=0)
+    same = np.all([run.printed(n) == recovered.fields.get(n, "").encode() for n in RESULTS], axis=0)
     return dict(Counter(name for name, is_same in zip(names, same, strict=True) if is_same))

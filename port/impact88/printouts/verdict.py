@@ -9,12 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import SequenceMatcher
 from types import MappingProxyType
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import LOOKALIKES, Glyph
+from .glyphs import LOOKALIKES, Glyph, plain_char
 from .labels import LABELS
-from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
+from .numerals import TYPED, as_printed, is_same_value, readings
 from .page import (
     ANGLES,
     ASTERISKS,
@@ -42,6 +43,8 @@ MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
 """Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
+LEADING_ZERO = re.compile("-?0[0-9]")
+"""The beginning of a number that lost digits."""
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
 _WORDS = frozenset(re.findall("[A-Z]+", " ".join(label.text for label in LABELS if label.row > 1)))
 
@@ -110,15 +113,11 @@ def _without_place(finding: Finding) -> tuple[Kind, str, str]:
 
 
 def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
-    """Return the verdict on a printout that lacks inputs: numbers printed twice may differ."""
+    """Return the verdict on a printout that lacks inputs."""
     due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
     comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
     findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
     findings += comparison.text_findings()
-    for name, slot in reading.repeated:
-        first = reading.slots.get(name)
-        if first and first.is_clean and comparison.is_contradiction(name, slot, first.text):
-            findings.append(comparison.finding(Kind.NUMBER, name, slot.glyphs, first.text))
     return Verification(
         verdict_of(findings),
         findings=tuple(sorted(findings, key=lambda finding: finding.start)),
@@ -177,14 +176,6 @@ class Word:
         shared = sum(char in alike for char in self.read)
         return self.read in _WORDS or 2 * shared < len(self.printed)
 
-    @property
-    def misread(self) -> int:
-        """Number of characters that a machine misread: none of another label."""
-        if self.is_other_label:
-            return 0
-        pairs = zip(self.printed, self.read, strict=False)
-        return sum(one != other and other.isalnum() for one, other in pairs)
-
 
 class Comparison:
     """Comparison of a reading with the page of a scene.
@@ -224,8 +215,13 @@ class Comparison:
             self.lost_rows = []
         self.numbers = {name: self._number(name) for name in names}
         damaged = [name for name in names if _NO_NUMBER.search(reading_text(reading, name))]
-        self.noise = len(damaged) + sum(word.misread for word in self.words)
-        self.is_machine_read = self.noise >= MACHINE_READ
+        others = {j for word in self.words if word.is_other_label for j in word.cells}
+        misread = [
+            j
+            for j, glyph in reading.chars.items()
+            if glyph.char != CELLS[j].char and glyph.char.isalnum() and j not in others
+        ]
+        self.is_machine_read = len(damaged) + len(misread) >= MACHINE_READ
 
     def _is_due(self, name: str, given: Mapping[str, str]) -> bool:
         return scene_name(name) not in given and ROW_OF[name] not in self.lost_rows
@@ -316,28 +312,16 @@ class Comparison:
         """Return what a number is that was not read as printed; None for one that was."""
         slot, printed = self.reading.slots.get(name), self.fields.get(name, "")
         if not slot:
-            row = tuple(self.fields.get(angle, "") for angle in ANGLES)
-            is_in_row = name in ANGLES and any(texts == row for texts, _ in self.reading.angle_rows)
-            return Kind.DOUBT if is_in_row else Kind.UNREAD
+            return Kind.UNREAD
         read = slot.text
         if read == printed and slot.is_clean:
             return None
-        if printed in (read, as_printed(read), read.strip("()[]{}")):
+        if printed in (read, as_printed(read), read.strip("()[]{}")) or printed in readings(read):
             return Kind.DOUBT
         if slot.is_clean:
-            return (
-                Kind.NUMBER if slot.is_bounded and not self._is_cut(slot, printed) else Kind.UNREAD
-            )
-        number_match = PRINTED.match(read)
-        rest = read[number_match.end() :] if number_match else read
-        if read.removesuffix(rest) == printed and not re.search("[0-9]", rest):
-            return Kind.DOUBT
-        foreign = len(_NO_NUMBER.findall(re.sub("[(CI{].?[)}]", "O", read)))
-        if foreign <= 1 and printed in readings(read):
-            return Kind.DOUBT
-        ends = [(re.escape(printed[:k]), re.escape(printed[k + 1 :])) for k in range(len(printed))]
-        is_blot = any(re.fullmatch(f"{a}[^0-9]{{1,2}}{b}", read) for a, b in ends)
-        return Kind.DOUBT if is_blot else Kind.UNREAD
+            is_end = slot.is_bounded and not self._is_cut(slot, printed)
+            return Kind.NUMBER if is_end else Kind.UNREAD
+        return Kind.DOUBT if self.is_machine_read and _is_alike(read, printed) else Kind.UNREAD
 
     def _is_cut(self, slot: Slot, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line."""
@@ -446,6 +430,8 @@ class Comparison:
         explains while an input is in doubt or a machine read the page, and on such a page unless
         each is one digit for another in which the reader does not err elsewhere.
         """
+        if self.is_machine_read:
+            findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         if not numbers:
             return [*findings]
@@ -470,6 +456,7 @@ class Comparison:
         """Return True for a number that was not read in one piece behind its exact label."""
         slot = self.reading.slots.get(name)
         is_clean = bool(slot and slot.is_clean and slot.is_bounded)
+        is_clean = is_clean and not LEADING_ZERO.match(reading_text(self.reading, name))
         return not is_clean and not (self.layout and self.layout._is_doubtful(name))
 
 
@@ -478,9 +465,22 @@ def reading_text(reading: Reading, name: str) -> str:
     return reading.slots[name].text if name in reading.slots else ""
 
 
+def _is_alike(read: str, printed: str) -> bool:
+    """Return True if at least half of a number's characters were read, in order."""
+    matchers = [SequenceMatcher(None, text, printed) for text in (read, *readings(read))]
+    shared = [sum(block.size for block in one.get_matching_blocks()) for one in matchers]
+    return 2 * max(shared) >= len(printed)
+
+
+def _is_slight(finding: Finding) -> bool:
+    """Return True for a number that differs in nothing but its sign or point."""
+    digits = [re.sub("[^0-9E]", "", text) for text in (finding.read, finding.printed)]
+    return finding.kind is Kind.NUMBER and digits[0] == digits[1] != ""
+
+
 def _swap(finding: Finding) -> str:
     """Return the digit printed and the one read in its place; "" for other findings."""
-    read = "".join(finding.read.split())
+    read = "".join(map(plain_char, "".join(finding.read.split())))
     pairs = [a + b for a, b in zip(finding.printed, read, strict=False) if a != b]
     is_swap = len(pairs) == 1 and len(finding.printed) == len(read) and pairs[0].isdigit()
     return pairs[0] if is_swap else ""
