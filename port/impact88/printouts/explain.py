@@ -15,9 +15,9 @@ import numpy as np
 from ..program.arithmetics import FLOAT64, Arithmetic
 from ..program.run import run
 from .findings import Finding, Kind, Verification
+from .numerals import opposite
 from .page import INPUTS, RESULTS
 from .reader import read_printouts
-from .numerals import opposite
 from .search import printed_fields
 
 MAX_UNEXPLAINED = 0.25

@@ -9,7 +9,7 @@ while they explain more.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
@@ -115,7 +115,8 @@ def find_scenes(
     ms = [("6", 0.0)] if has_spins else [("4", 0.0), ("6", ALIKE)]
     if "M" in given:
         ms = [(given["M"], 0.0)]
-    best = search.replay(_combinations({n: column[:1] for n, column in columns.items()}, ms, len(ms)))
+    first = {name: options[:1] for name, options in columns.items()}
+    best = search.replay(_combinations(first, ms, len(ms)))
     if best[0].mismatch >= CONTRADICTED:
         best = search.replay(_combinations(columns, ms, MAX_CANDIDATES))
     as_read = best[0]
