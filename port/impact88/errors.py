@@ -9,7 +9,6 @@ from types import ModuleType
 LONGEST_MESSAGE = 500  # six lines of a terminal
 LONGEST_PLACE = 200  # a path and a line number
 LONGEST_QUOTE = 60  # a cell, or a number with its unit
-BEYOND_DOUBLES = "the values known lead beyond the range of doubles"
 
 
 def one_line(text: str, longest: int = LONGEST_MESSAGE) -> str:

@@ -195,10 +195,6 @@ def quantity(name: str) -> Quantity:
     return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
 
 
-NO_AMOUNTS = ("title", "case", "examiner", "date", "correlations", "M")
-"""Entries of a scene file that are not amounts."""
-
-
 def split_names(names: Sequence[str] | str) -> Sequence[str]:
     """Return names as a sequence; a text is split at commas and blanks."""
     return names.replace(",", " ").split() if isinstance(names, str) else names
@@ -216,18 +212,15 @@ def check_names(
             raise UserError(f"{name!r} is not a {what}{hint} (expected {' '.join(allowed)})", where)
 
 
+LIKENESS = 0.75  # of a hint: MUU is like MU (0.8), VAX is not like VAY (0.67)
+
+
 def did_you_mean(word: str, known: Collection[str]) -> str:
     """Return a hint at the known word closest to ``word``, "" if none is close."""
-    import re
     from difflib import get_close_matches
 
     in_any_case = {name.lower(): name for name in known}
-    # short names differ by a single letter anyway; a letter typed twice (MUU) is recognized
-    likeness = 0.75 if len(word) > 3 else 1.0
-    matches = get_close_matches(word.lower()[:80], in_any_case, 1, likeness)
-    spelling = re.sub(r"(.)\1+", r"\1", word.lower()[:80])
-    if not matches and spelling in in_any_case:
-        matches = [spelling]
+    matches = get_close_matches(word.lower()[:80], in_any_case, 1, LIKENESS)
     return f"; did you mean {in_any_case[matches[0]]}?" if matches else ""
 
 
