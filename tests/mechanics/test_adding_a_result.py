@@ -15,7 +15,7 @@ def momentum_along_x(MA, MB, VAX, VBX):
     return (PX,)
 '''
 ROW = '    ("PX", "P_x", "momentum along x after the impact", IMPULSE),\n'
-LINE = '        f["PX"] = g["MA"] * after[0] + g["MB"] * after[3]\n'
+LINE = '    f["PX"] = g["MA"] * after[0] + g["MB"] * after[3]\n'
 CHECK = """
 import impact88
 from impact88.mechanics.reference import results
@@ -27,7 +27,7 @@ assert abs(px - scene["MA"] * scene["UX"] - scene["MB"] * scene["VX"]) < 1e-9 * 
 assert "PX" in impact88.solve(scene)
 assert impact88.prepared("UX", "PX", scene)([scene["UX"]])["PX"] == px
 assert impact88.evaluate({"MA": 1, "MB": 2, "VAX": 3, "VBX": 4}, "PX")[0]["PX"] == 11
-assert "CLONES void momentum_along_x(" in header()
+assert "CLONES void each_momentum_along_x(" in header()
 try:
     impact88.solve({}, "PX")
 except impact88.UserError as error:
@@ -49,7 +49,7 @@ def test_a_result_is_one_function_one_row_and_one_line(tmp_path):
     shutil.copytree(PACKAGE, copy, ignore=omitted)
     insert(copy / "mechanics" / "formulas.py", "\n# -- energies\n", FUNCTION)
     insert(copy / "names.py", '    ("COND", "κ"', ROW)
-    insert(copy / "mechanics" / "reference.py", '        f["VC"] =', LINE)
+    insert(copy / "mechanics" / "reference.py", '    f["VC"] =', LINE)
     environment = {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
     command = [sys.executable, "-c", CHECK]
     run = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True)

@@ -3,9 +3,9 @@
 Each function computes a few quantities from others; its parameters are their names, so that a
 result needs exactly the functions that lead to it (`plan`). numpy runs a function over arrays
 unchanged, and `translate` prints it as a C loop. Bodies are therefore assignments of ``+ - * /``,
-comparisons, ``& | ~``, `where`, `fabs` and `sqrt`; the last line returns the quantities that others
-may use, which are numbers, never conditions. To add a result, write its function here, its row in
-`names.RESULTS` and its line in `reference`.
+comparisons, ``& | ~``, `where`, `fabs` and `sqrt`, with decimal points in all numbers; the last
+line returns the quantities that others may use, which are numbers, never conditions. To add a
+result, write its function here, its row in `names.RESULTS` and its line in `reference`.
 
 Axes and signs: n = (cos GA, sin GA) and t = (-sin GA, cos GA), A on the +n side; the impulse acts
 on A, and its opposite on B. Lower-case names: s, c sine and cosine of GA; ma, mb, ia, ib inverse
@@ -33,13 +33,13 @@ small): nothing cancels, however long the arms are and however unequal the bodie
 """
 
 from numpy import absolute as fabs
-from numpy import sqrt, where
+from numpy import inf, sqrt, where
 
-INF = float("inf")
+INF = inf
 LARGEST = 1.7976931348623157e308  # the largest double
 PIVOT = -10.0  # the MU of a pivot
 RADIAN = 0.017453292519943295  # of a degree
-PER_QUARTER = 1 / 90  # quarter turns of a degree
+PER_QUARTER = 1.0 / 90.0  # quarter turns of a degree
 ROUND = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to an integer
 LARGEST_ANGLE = 1e12  # degrees; the quarter turns of larger ones are not exact
 
@@ -50,7 +50,7 @@ EM_MAX = 0.0
 NO_MOMENT = 1.0  # the EM that stands for no moment impulse
 
 # tolerances of STATUS
-SINGULAR_FROM = 2.0**26  # COND: half of a double's digits may be lost
+SINGULAR_FROM = 67108864.0  # 2**26, COND: half of a double's digits may be lost
 ENERGY_TOLERANCE = 2e-12  # twice the gain that is rounding, as a fraction of KI: 10^4 roundings
 FRICTION_TOLERANCE = 1e-9  # of P_t/P_n: above rounding, below the last digit anyone types
 SIDE_TOLERANCE = 1e-9  # of a center beyond the contact plane, as a fraction of its distance

@@ -1,4 +1,4 @@
-"""Computing a plan's results over arrays of scenes: by the compiled library, or by numpy.
+"""Computing quantities over arrays of scenes: by the compiled library, or by numpy.
 
 The library (`machine.c`, with `formulas` as C) runs strips of 128 scenes; numpy runs the same
 functions over longer strips, to the same bits.
@@ -17,25 +17,20 @@ from numpy.typing import NDArray
 
 from .. import library
 from ..errors import UserError
-from ..names import PIVOT
 from . import consequences, formulas
-from .plan import COLUMNS, COMPILED, FORMULAS, NUMBERS, OTHERS, PIVOTS, ROWS, Plan
+from .plan import COMPILED, FORMULAS, OTHERS, PIVOTS, ROWS
 from .translate import digest
 
 Array = NDArray[Any]
-Floats = NDArray[np.float64]
 
 STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the second-level cache
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
-MAX_BLOCK = 1 << 25  # bytes; the C library maps larger arrays anew each time, page by page
+PROCESSORS = os.cpu_count() or 1
 NOT_FINITE = 64.0
-SHARED = "out: a result shares memory with a column or another result"
 FINITE, ANY_SIZE, BITS, RAW = range(4)  # kinds of results in `machine.c`
-_ONE = np.float64(1.0)
+KINDS = {"STATUS": BITS, "COND": ANY_SIZE}  # of checked results; the others are finite
+NUMBERS = {name: number for number, name in enumerate(COMPILED)}  # of loops in the library
 _address_of, _buffer_of = ctypes.addressof, ctypes.c_char.from_buffer
-FUNCTIONS: dict[str, Callable[..., tuple[Any, ...]]] = {
-    name: getattr(formulas if name in COMPILED else consequences, name) for name in FORMULAS
-}
 
 
 def _load() -> Any:
@@ -51,161 +46,163 @@ _compiled = _load()
 
 
 class Kernel:
-    """The computation of a plan in which some inputs vary from scene to scene.
+    """The computation of quantities by formulas that the library has.
 
     Parameters
     ----------
-    plan : Plan
-        Steps and inputs; ``fit`` is among its results where ``checked``.
-    wanted : tuple of str
-        Names of the results, none of them an input.
+    steps : sequence of (str, int)
+        Formulas in order, with their guards (`plan`).
+    wanted : sequence of str
+        Quantities that they give; ``fit`` is among those they give where ``is_checked``.
     varying : frozenset of str
         Names of the inputs that have a number for each scene.
-    checked : bool
+    is_checked : bool
         Whether results are made NaN where a scene cannot be used, or are not finite.
     """
 
     def __init__(
         self,
-        plan: Plan,
-        wanted: tuple[str, ...],
+        steps: Sequence[tuple[str, int]],
+        wanted: Sequence[str],
         varying: frozenset[str],
-        checked: bool,
+        is_checked: bool,
     ) -> None:
-        self.fixed = [name for name in plan.inputs if name not in varying]
-        self.changing = [name for name in plan.inputs if name in varying]
         self.wanted = wanted
-        self._varying = varying
-        self._checked = checked
+        self._kinds = [KINDS.get(name, FINITE) if is_checked else RAW for name in wanted]
+        operands = dict.fromkeys(x for name, _ in steps for x in FORMULAS[name].takes)
+        inputs = operands.keys() - {x for name, _ in steps for x in FORMULAS[name].gives}
+        self.fixed = [name for name in inputs if name not in varying]
+        self.changing = [name for name in inputs if name in varying]
         changing = set(varying)
         once: list[tuple[str, int]] = []
         each: list[tuple[str, int]] = []
-        for name, guard in plan.steps:
-            formula = FORMULAS[name]
-            if changing.isdisjoint(formula.takes):
+        for name, guard in steps:
+            if changing.isdisjoint(FORMULAS[name].takes):
                 once.append((name, 0))  # a later strip may have the pivots that the first lacks
             else:
                 each.append((name, guard))
-                changing.update(formula.gives)
+                changing.update(FORMULAS[name].gives)
         self._steps = once + each
-        if checked:
-            kinds = {"STATUS": BITS, "COND": ANY_SIZE}
-            self._kinds = [kinds.get(name, FINITE) for name in wanted]
-        else:
-            self._kinds = [RAW] * len(wanted)
-        given = {name for step, _ in plan.steps for name in FORMULAS[step].gives}
-        # a formula would replace a known quantity in its row
-        self._is_translated = given.isdisjoint(plan.inputs)
-        first = len(COLUMNS)
-        pairs = [(ROWS[name], int(name in varying)) for name in (*self.fixed, *self.changing)]
+        pairs = [(ROWS[name], 0) for name in self.fixed]
+        pairs += [(ROWS[name], 1) for name in self.changing]
         pairs += [(NUMBERS[name], guard) for name, guard in self._steps]
-        pairs += [(ROWS[n] - first, kind) for n, kind in zip(wanted, self._kinds, strict=True)]
-        fit = ROWS["fit"] - first if checked else 0
-        sizes = [len(plan.inputs), len(once), len(self._steps), len(wanted), fit]
+        pairs += [(ROWS[name], kind) for name, kind in zip(wanted, self._kinds, strict=True)]
+        sizes = [len(inputs), len(once), len(steps), len(wanted), ROWS["fit"]]
         self._plan = np.array([*sizes, *(x for pair in pairs for x in pair)], np.int64)
-        self._address = self._plan.ctypes.data
-
-    @property
-    def is_compiled(self) -> bool:
-        """Whether the compiled library computes it."""
-        return _compiled is not None and self._is_translated and not library.is_switched_off()
-
-    def new_results(self, shape: tuple[int, ...]) -> tuple[dict[str, Array], list[int]]:
-        """Return arrays for results, rows of as few as possible, and their addresses."""
-        size = 8 * math.prod(shape)
-        together = max(1, MAX_BLOCK // max(1, size))
-        numbers = [n for n, kind in zip(self.wanted, self._kinds, strict=True) if kind != BITS]
-        arrays: dict[str, Array] = {}
-        starts: list[int] = []
-        for begin in range(0, len(numbers), together):
-            group = numbers[begin : begin + together]
-            block = np.empty((len(group), *shape))
-            first = address(block)
-            for row, name in enumerate(group):
-                arrays[name] = block[row, ...]
-                starts.append(first + size * row)
-        if len(numbers) < len(self.wanted):
-            bits = np.empty(shape, np.uint16)
-            starts.insert(self.wanted.index("STATUS"), address(bits))
-            arrays["STATUS"] = bits
-            arrays = {name: arrays[name] for name in self.wanted}
-        return arrays, starts
 
     def compute(
         self,
         inputs: Mapping[str, Any],
         shape: tuple[int, ...],
-        out: Mapping[str, Array] | None,
-        threads: int | None,
+        out: Mapping[str, Array] | None = None,
+        threads: int | None = 1,
     ) -> dict[str, Array]:
         """Return results of inputs.
 
         Parameters
         ----------
         inputs : mapping of str to float or ndarray
-            The plan's inputs: numbers, and contiguous float64 arrays of one length where they vary.
+            Numbers, and contiguous float64 arrays of one length for inputs that vary.
         shape : tuple of int
             The shape of the results, of that size.
-        out : mapping of str to ndarray or None
-            Arrays to write the results into; None for new ones.
-        threads : int or None
+        out : mapping of str to ndarray, optional
+            Arrays to write the results into, instead of new ones.
+        threads : int or None, default 1
             The number of threads, None for as many as there are processors and work.
         """
-        places = addresses([inputs[name] for name in self.changing])
+        columns = [inputs[name] for name in self.changing]
+        places = addresses(columns)
         if out is None:
-            arrays, starts = self.new_results(shape)
+            results, starts = self.new_arrays(shape)
         else:
-            if lacking := [name for name in self.wanted if name not in out]:
-                raise UserError(f"out lacks {' '.join(lacking)}; expected an array for each result")
-            arrays = {name: out[name] for name in self.wanted}
-            starts = check_output(arrays, shape, places)
+            results, starts = self._checked(out, shape, places)
         count = math.prod(shape)
         if self.is_compiled:
             numbers = np.array([inputs[name] for name in self.fixed])
-            first = address(numbers)
-            fixed = range(first, first + numbers.nbytes, 8)
-            self.run_at([*fixed, *places, *starts], count, threads)
-            return arrays
-        flat = [array.reshape(-1) for array in arrays.values()]
+            self.run_at(numbers, [*places, *starts], count, threads)
+            return results
+        flat = [array.reshape(-1) for array in results.values()]
         for start in range(0, count, STRIP):
             part = slice(start, start + STRIP)
             values = {name: np.float64(inputs[name]) for name in self.fixed}
-            values.update({name: inputs[name][part] for name in self.changing})
-            self._run_strip(values, [array[part] for array in flat])
-        return arrays
+            values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
+            run_formulas(self._steps, values)
+            for to, name, kind in zip(flat, self.wanted, self._kinds, strict=True):
+                to[part] = finished(values, name, kind)
+        return results
 
-    def run_at(self, starts: Sequence[int], count: int, threads: int | None) -> None:
-        """Compute ``count`` scenes by the library, given the addresses of numbers, of arrays and of
-        results, in the order of `inputs`."""
-        places = np.array(starts, np.int64)
-        run_in_threads(partial(_compiled.solve, self._address, address(places)), count, threads)
+    @property
+    def is_compiled(self) -> bool:
+        """Whether the compiled library computes it."""
+        return _compiled is not None and not library.is_switched_off()
 
-    @np.errstate(all="ignore")
-    def _run_strip(self, value: dict[str, Any], results: Sequence[Array]) -> None:
-        """Compute a strip by numpy."""
-        known = frozenset(value)
-        is_pivot = np.asarray(value.get("MU", 0.0)) == PIVOT
-        for name, guard in self._steps:
-            formula = FORMULAS[name]
-            if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
-                value.update(dict.fromkeys(formula.gives, _ONE))
-                continue
-            computed = FUNCTIONS[name](*[value[operand] for operand in formula.takes])
-            for quantity, array in zip(formula.gives, computed, strict=True):
-                if quantity not in known:
-                    value[quantity] = array
-        for to, name, kind in zip(results, self.wanted, self._kinds, strict=True):
-            if kind == RAW:
-                to[:] = value[name]
-                continue
-            largest = np.inf if kind == ANY_SIZE else formulas.LARGEST
-            is_usable = (value["fit"] == 1.0) & (np.abs(value[name]) <= largest)
-            to[:] = np.where(is_usable, value[name] + 0.0, NOT_FINITE if kind == BITS else np.nan)
+    def run_at(
+        self, numbers: Array, places: Sequence[int], count: int, threads: int | None
+    ) -> None:
+        """Compute ``count`` scenes by the library, given the numbers of the inputs that are
+        `fixed`, and the addresses of those that are `changing` and of results."""
+        (first,) = addresses([numbers])
+        table = np.array([*range(first, first + numbers.nbytes, 8), *places], np.int64)
+        work = partial(_compiled.solve, *addresses([self._plan, table]))
+        run_in_threads(work, count, threads)
+
+    def new_arrays(self, shape: tuple[int, ...]) -> tuple[dict[str, Array], list[int]]:
+        """Return arrays for results, rows of one block, and their addresses."""
+        block = np.empty((len(self.wanted), *shape))
+        (first,) = addresses([block])
+        size = 8 * math.prod(shape)
+        arrays: dict[str, Array] = {name: block[k, ...] for k, name in enumerate(self.wanted)}
+        starts = [first + k * size for k in range(len(arrays))]
+        if BITS in self._kinds:
+            bits = arrays["STATUS"] = np.empty(shape, np.uint16)
+            (starts[self._kinds.index(BITS)],) = addresses([bits])
+        return arrays, starts
+
+    def _checked(
+        self, out: Mapping[str, Array], shape: tuple[int, ...], inputs: Sequence[int]
+    ) -> tuple[dict[str, Array], list[int]]:
+        """Return the arrays to write results into, and their addresses. Raises UserError for arrays
+        that cannot take them; ``inputs``: the addresses of the columns."""
+        for name, kind in zip(self.wanted, self._kinds, strict=True):
+            array: Any = out.get(name)
+            dtype: type = np.uint16 if kind == BITS else np.float64
+            is_array = isinstance(array, np.ndarray) and array.flags.carray
+            if not is_array or array.shape != shape or array.dtype != dtype:
+                expected = f"a contiguous array of {dtype.__name__} of shape {shape}"
+                raise UserError(f"out, {name}: expected {expected}")
+        results = {name: out[name] for name in self.wanted}
+        starts = addresses(list(results.values()))
+        spans = [(at, at + x.nbytes, 1) for at, x in zip(starts, results.values(), strict=True)]
+        spans += [(at, at + 8 * math.prod(shape), 0) for at in inputs]
+        for (_, end, is_result), (start, _, is_other) in pairwise(sorted(spans)):
+            if start < end and is_result | is_other:  # columns may overlap each other
+                raise UserError("out: a result shares memory with a column or another result")
+        return results, starts
 
 
-def address(array: Any) -> int:
-    """Return the address of an array's first element."""
-    return addresses([array])[0]
+@np.errstate(all="ignore")
+def run_formulas(steps: Sequence[tuple[str, int]], values: dict[str, Any]) -> None:
+    """Add what formulas give to values, by numpy; a quantity that is there stays."""
+    is_pivot = np.asarray(values.get("MU", 0.0)) == formulas.PIVOT
+    for name, guard in steps:
+        formula = FORMULAS[name]
+        if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
+            computed = [np.float64(1.0)] * len(formula.gives)  # not used
+        else:
+            function = getattr(formulas if name in COMPILED else consequences, name)
+            computed = function(*[values[operand] for operand in formula.takes])
+        for quantity, array in zip(formula.gives, computed, strict=True):
+            values.setdefault(quantity, array)
+
+
+def finished(values: Mapping[str, Any], name: str, kind: int) -> Any:
+    """Return a result as the library writes it."""
+    x = values[name]
+    if kind == RAW:
+        return x
+    largest = np.inf if kind == ANY_SIZE else formulas.LARGEST
+    is_usable = (values["fit"] == 1.0) & (np.abs(x) <= largest)
+    return np.where(is_usable, x + 0.0, NOT_FINITE if kind == BITS else np.nan)
 
 
 def addresses(arrays: Sequence[Any]) -> list[int]:
@@ -219,9 +216,7 @@ def addresses(arrays: Sequence[Any]) -> list[int]:
 def run_in_threads(work: Callable[[int, int], object], count: int, threads: int | None) -> None:
     """Call ``work(begin, end)`` for parts of ``count`` scenes, `SCENES_PER_THREAD` at least on each
     thread."""
-    parts = count // SCENES_PER_THREAD
-    if parts > 1:
-        parts = min(parts, threads or os.cpu_count() or 1)
+    parts = min(count // SCENES_PER_THREAD, threads or PROCESSORS)
     if parts < 2:
         work(0, count)
         return
@@ -230,24 +225,3 @@ def run_in_threads(work: Callable[[int, int], object], count: int, threads: int 
     ends = [count * k // parts for k in range(parts + 1)]
     with ThreadPoolExecutor(parts) as pool:
         list(pool.map(work, ends[:-1], ends[1:]))
-
-
-def check_output(
-    results: Mapping[str, Array], shape: tuple[int, ...], inputs: Sequence[int]
-) -> list[int]:
-    """Return the addresses of arrays to write results of scenes of a shape into. Raises UserError
-    for arrays that cannot take them; ``inputs``: the addresses of the columns."""
-    for name, array in results.items():
-        kind = np.uint16 if name == "STATUS" else np.float64
-        if not (isinstance(array, np.ndarray) and array.shape == shape and array.dtype == kind):
-            raise UserError(f"out, {name}: expected an array of {kind.__name__} of shape {shape}")
-        if not array.flags.carray:
-            raise UserError(f"out, {name}: expected a contiguous array that can be written to")
-    starts = addresses(list(results.values()))
-    parts = [(at, array.nbytes, True) for at, array in zip(starts, results.values(), strict=True)]
-    parts += [(at, 8 * math.prod(shape), False) for at in inputs]
-    for (first, size, is_result), (second, _, is_other) in pairwise(sorted(parts)):
-        # columns may overlap each other
-        if second - first < size and (is_result or is_other):
-            raise UserError(SHARED)
-    return starts

@@ -17,6 +17,13 @@ typedef double ROW[STRIP + 8] __attribute__((aligned(64)));
 #else
 #define CLONES static
 #endif
+#ifdef _MSC_VER
+#define INLINE static __forceinline
+#else
+#define INLINE static inline __attribute__((always_inline))
+#endif
+#define inf INFINITY
+#define where(condition, yes, no) ((condition) ? (yes) : (no))
 #include "formulas.h"
 
 /* What is not finite, and everything of a scene that cannot be used, is NaN; no zero is negative. */
@@ -49,7 +56,7 @@ const char *instructions(void)
    the results. */
 void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
 {
-    ROW row[ROWS], near[COLUMNS];
+    ROW row[ROWS]; /* those of columns: of numbers, and of the last strip's ends */
     const int64_t *input = plan + 5, *step = input + 2 * plan[0], *result = step + 2 * plan[2];
     const double *in[COLUMNS] = {0};
     for (int64_t at = begin; at < end; at += STRIP) {
@@ -57,7 +64,7 @@ void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
         for (int64_t k = 0; k < plan[0]; k++) {
             const double *from = places[k];
             int64_t n = input[2 * k], varies = input[2 * k + 1];
-            double *copy = n < COLUMNS ? near[n] : row[n - COLUMNS]; /* a known quantity has a row */
+            double *copy = row[n];
             if (n < COLUMNS) in[n] = varies && count == STRIP ? from + at : copy;
             if (n < COLUMNS && in[n] != copy) continue;
             if (varies) memcpy(copy, from + at, (size_t)count * sizeof *from);
@@ -68,7 +75,7 @@ void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
         for (int64_t k = at == begin ? 0 : plan[1]; k < plan[2]; k++) {
             int64_t guard = step[2 * k + 1];
             if (guard == 1 ? !pivots : guard == 2 && pivots == STRIP) continue;
-            functions[step[2 * k]](in, row);
+            loops[step[2 * k]](in, row);
         }
         for (int64_t k = 0; k < plan[3]; k++) {
             int64_t kind = result[2 * k + 1], size = kind == 2 ? 2 : 8;

@@ -7,7 +7,7 @@ imports numpy: the build step that prints the formulas as C reads them through t
 import ast
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..names import SCENE
 
@@ -25,7 +25,7 @@ GUARDS = {
     "sliding_spins": OTHERS,
 }
 """Formulas that only pivots need, or only the other scenes."""
-GUARDED_USERS = frozenset(("impulse", "final_spins", *GUARDS))
+GUARDED_USERS = {"impulse", "final_spins", *GUARDS}
 """Formulas that look at the guarded ones' results only where these apply."""
 
 
@@ -76,11 +76,9 @@ def _read_formulas(module: ast.Module) -> dict[str, Formula]:
     formulas = {}
     for tree in module.body:
         if isinstance(tree, ast.FunctionDef) and not tree.name.startswith("_"):
-            last = tree.body[-1]
-            if not (isinstance(last, ast.Return) and isinstance(last.value, ast.Tuple)):
-                raise TypeError(f"{tree.name} does not end with the names that it returns")
-            gives = tuple(name.id for name in last.value.elts if isinstance(name, ast.Name))
             takes = tuple(argument.arg for argument in tree.args.args)
+            last: Any = tree.body[-1]  # a return of a tuple of names
+            gives = tuple(name.id for name in last.value.elts)
             formulas[tree.name] = Formula(tree.name, takes, gives, tree)
     return formulas
 
@@ -91,13 +89,14 @@ FUNCTIONS = _read_formulas(SOURCE)
 COMPILED = {name: formula for name, formula in FUNCTIONS.items() if name not in HELPERS}
 """Formulas that the compiled library has, too."""
 FORMULAS = COMPILED | _read_formulas(_parse("consequences.py"))
-PRINCIPAL = {quantity: f.name for f in COMPILED.values() for quantity in f.gives}
-"""Quantity -> the formula of `formulas` that gives it."""
-ROWS = {name: row for row, name in enumerate((*COLUMNS, *PRINCIPAL))}
+ROWS = {
+    name: row
+    for row, name in enumerate((*COLUMNS, *(x for f in COMPILED.values() for x in f.gives)))
+}
 """Name -> number of the column or quantity in the compiled library."""
-NUMBERS = {name: number for number, name in enumerate(COMPILED)}
-"""Formula -> its number in the compiled library."""
-QUANTITIES = tuple(dict.fromkeys((*ROWS, *(x for f in FORMULAS.values() for x in f.gives))))
+GIVERS = {x: f for f in reversed(FORMULAS.values()) for x in f.gives if x not in COLUMNS}
+"""Quantity -> the formula that gives it, of several the first."""
+QUANTITIES = dict.fromkeys((*ROWS, *(x for f in FORMULAS.values() for x in f.gives)))
 """Names of everything that can be known or asked for."""
 
 
@@ -128,33 +127,20 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     {'KI': ('IA', 'IB')}
     """
     sources = _sources(known)
-    missing = {}
-    order: dict[str, None] = {}
+    missing = {x: _lacking(x, known) for x in wanted if x not in known and x not in sources}
+    needed = {x for x in wanted if x in sources}
     inputs: set[str] = set()
-    users: dict[str, set[str]] = {}
-
-    def add(quantity: str, user: str) -> None:
-        """Add the formulas that lead to a quantity, which ``user`` takes."""
-        if quantity in known:
-            if user:
-                inputs.add(quantity)
-            return
-        name = sources[quantity]
-        users.setdefault(name, set()).add(user)
-        if name not in order:
-            for operand in FORMULAS[name].takes:
-                add(operand, name)
-            order[name] = None
-
-    for quantity in wanted:
-        if quantity in known or quantity in sources:
-            add(quantity, "")
-        else:
-            missing[quantity] = _lacking_columns(quantity, known)
-    steps = tuple(
-        (name, GUARDS.get(name, 0) if users[name] <= GUARDED_USERS else 0) for name in order
-    )
-    return Plan(steps, tuple(name for name in QUANTITIES if name in inputs), missing)
+    steps: list[tuple[str, int]] = []
+    for name in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
+        formula = FORMULAS[name]
+        gives = {x for x in needed.intersection(formula.gives) if sources.get(x) == name}
+        if gives:
+            users = {step for step, _ in steps if not gives.isdisjoint(FORMULAS[step].takes)}
+            is_guarded = users <= GUARDED_USERS and gives.isdisjoint(wanted) and "MU" in known
+            steps.append((name, GUARDS.get(name, 0) if is_guarded else 0))
+            inputs |= known.intersection(formula.takes)
+            needed.update(formula.takes)
+    return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 
 def _sources(known: frozenset[str]) -> dict[str, str]:
@@ -165,9 +151,8 @@ def _sources(known: frozenset[str]) -> dict[str, str]:
     sources: dict[str, str] = {}
     pending = list(FORMULAS.values())
     while True:
-        ready = next(
-            (f for f in pending if all(name in known or name in sources for name in f.takes)), None
-        )
+        available = known.union(sources)
+        ready = next((f for f in pending if available.issuperset(f.takes)), None)
         if ready is None:
             return sources
         pending.remove(ready)
@@ -176,22 +161,10 @@ def _sources(known: frozenset[str]) -> dict[str, str]:
                 sources.setdefault(quantity, ready.name)
 
 
-def _lacking_columns(quantity: str, known: frozenset[str]) -> tuple[str, ...]:
-    """Return the columns that a quantity needs by `formulas`, or what else gives it, and that are
-    not known."""
-    lacking: set[str] = set()
-    examined: set[str] = set()
-    pending = [quantity]
-    consequences = {x: f.takes for f in reversed(FORMULAS.values()) for x in f.gives}
-    while pending:
-        name = pending.pop()
-        if name in known or name in examined:
-            continue
-        examined.add(name)
-        if name in PRINCIPAL:
-            pending.extend(COMPILED[PRINCIPAL[name]].takes)
-        elif name in COLUMNS or name not in consequences:
-            lacking.add(name)
-        else:
-            pending.extend(consequences[name])
-    return tuple(name for name in QUANTITIES if name in lacking)
+def _lacking(quantity: str, known: frozenset[str]) -> tuple[str, ...]:
+    """Return what a quantity needs, by the formula that gives it, and that is not known."""
+    lacking = [quantity]
+    for name in lacking:
+        if name in GIVERS:
+            lacking += [x for x in GIVERS[name].takes if x not in known and x not in lacking]
+    return tuple(name for name in QUANTITIES if name in lacking and name not in GIVERS)

@@ -17,6 +17,7 @@ from ..names import FINAL_STATE, VELOCITIES
 DIGITS = 50  # correct digits: three times a double's
 WRITTEN = 30  # digits of a text; the chapter's worked cases have as many
 GUARD = 15  # working digits beyond, besides those for the spread of a scene's numbers
+SPINS = ("WA", "WB")
 UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM")  # by point masses
 
 Number = Any  # mpmath.mpf, which has no usable type
@@ -83,7 +84,7 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
         powers = [int(mpmath.log10(x)) for x in sizes if x and mpmath.isfinite(x)]
     spread = max(powers, default=0) - min(powers, default=0)
     with mpmath.workdps(DIGITS + GUARD + 3 * spread):
-        return _Scene({name: _number(x) for name, x in scene.items()}).results()
+        return _results({name: _number(x) for name, x in scene.items()})
 
 
 def _number(value: str | float) -> Number:
@@ -111,132 +112,88 @@ def _dot(row: Iterable[Number], column: Iterable[Number]) -> Number:
     return _total(*(a * b for a, b in zip(row, column, strict=True)))
 
 
-def _determinant(rows: Sequence[Sequence[Number]]) -> Number:
-    """Return the determinant of three rows, as `_total`: 0 where nothing but rounding remains."""
-    a, b, c = rows
-    even = [a[i] * b[j] * c[k] for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))]
-    odd = [-a[i] * b[j] * c[k] for i, j, k in ((0, 2, 1), (1, 0, 2), (2, 1, 0))]
-    return _total(*even, *odd)
+def _cross(first: Sequence[Number], second: Sequence[Number]) -> list[Number]:
+    """Return the cross product of two columns."""
+    x, y, z = first
+    u, v, w = second
+    return [_total(y * w, -z * v), _total(z * u, -x * w), _total(x * v, -y * u)]
 
 
-class _Scene:
-    """The numbers of a scene, and the relative velocities that they lead to."""
+def _solve_three(rows: Sequence[Sequence[Number]], right: Sequence[Number]) -> list[Number] | None:
+    """Return the solution of three equations by Cramer's rule, None where they are singular."""
+    columns = list(zip(*rows, strict=True))
+    crosses = [_cross(columns[k - 2], columns[k - 1]) for k in range(3)]
+    divisor = _dot(columns[0], crosses[0])
+    return [_dot(right, cross) / divisor for cross in crosses] if divisor else None
 
-    def __init__(self, g: dict[str, Number]) -> None:
-        self.mpmath = mpmath = _mpmath()
-        self.g = g
-        self.zero = mpmath.mpf(0)
-        self.is_point = g.get("M", 6) == 4
-        if self.is_point:
-            g.update(dict.fromkeys(UNUSED, self.zero), IA=mpmath.inf, IB=mpmath.inf)
-        self.is_pivot = g["MU"] == -10
-        self.s, self.c = self._direction(g["GA"])
-        sine_a, cosine_a = self._direction(g["TA"] + g["PA"])
-        sine_b, cosine_b = self._direction(g["TB"] + g["PB"])
-        self.d1, self.d2 = g["DB"] * sine_b, g["DB"] * cosine_b
-        self.d3, self.d4 = g["DA"] * sine_a, g["DA"] * cosine_a
-        s, c = self.s, self.c
-        # relative velocities of the contact points along n and t, and of the spins, A's minus B's
-        one = mpmath.mpf(1)
-        d1, d2, d3, d4 = self.d1, self.d2, self.d3, self.d4
-        self.relative = [
-            [c, s, _total(d3 * c, -d4 * s), -c, -s, _total(d1 * c, -d2 * s)],
-            [-s, c, _total(-d4 * c, -d3 * s), s, -c, _total(-d2 * c, -d1 * s)],
-            [self.zero, self.zero, one, self.zero, self.zero, -one],
-        ]
-        self.inertias = [g[name] for name in ("MA", "MA", "IA", "MB", "MB", "IB")]
-        self.inverse = [self.zero if mpmath.isinf(x) else 1 / x for x in self.inertias]
-        self.before = [g[name] for name in VELOCITIES]
-        if self.is_point:
-            self.before[2] = self.before[5] = self.zero
-        self.gn, self.gt, self.gw = (_dot(row, self.before) for row in self.relative)
-        opposes = self.is_pivot or self.gt <= 0
-        self.mu = g["MU"] if opposes else -g["MU"]
 
-    def _direction(self, degrees: Number) -> tuple[Number, Number]:
-        """Return sine and cosine."""
-        return self.mpmath.sinpi(degrees / 180), self.mpmath.cospi(degrees / 180)
+def _results(g: dict[str, Number]) -> dict[str, Number]:
+    """Return the results of a scene's numbers."""
+    mpmath = _mpmath()
+    is_point, is_pivot = g.get("M", 6) == 4, g["MU"] == -10
+    if is_point:
+        g = {**g, **dict.fromkeys(UNUSED, mpmath.mpf(0)), "IA": mpmath.mpf(1), "IB": mpmath.mpf(1)}
+    s, c = _direction(g["GA"])
+    sine_a, cosine_a = _direction(g["TA"] + g["PA"])
+    sine_b, cosine_b = _direction(g["TB"] + g["PB"])
+    d1, d2 = g["DB"] * sine_b, g["DB"] * cosine_b
+    d3, d4 = g["DA"] * sine_a, g["DA"] * cosine_a
+    # relative velocities of the contact points along n and t, and of the spins, A's minus B's
+    relative = [
+        [c, s, _total(d3 * c, -d4 * s), -c, -s, _total(d1 * c, -d2 * s)],
+        [-s, c, _total(-d4 * c, -d3 * s), s, -c, _total(-d2 * c, -d1 * s)],
+        [0, 0, 1, 0, 0, -1],
+    ]
+    masses = [g[name] for name in ("MA", "MA", "IA", "MB", "MB", "IB")]
+    changes = [[x / m for x, m in zip(row, masses, strict=True)] for row in relative]
+    before = [0 if is_point and name in SPINS else g[name] for name in VELOCITIES]
+    gn, gt, gw = (_dot(row, before) for row in relative)
+    mu = g["MU"] if is_pivot or gt <= 0 else -g["MU"]
 
-    def impulse(self, is_pivot: bool) -> list[Number] | None:
-        """Return Pn, Pt and the moment; None where the equations are singular."""
-        e, em = self.g["E"], self.g["EM"]
-        K = [
-            [
-                _total(*map(self.mpmath.fprod, zip(x, self.inverse, y, strict=True)))
-                for y in self.relative
-            ]
-            for x in self.relative
-        ]
-        rows = [K[0], K[1] if is_pivot else [-self.mu, self.mpmath.mpf(1), self.zero]]
-        right = [-(1 + e) * self.gn, -self.gt if is_pivot else self.zero]
-        if not self.is_point:
-            rows.append([(1 - em) * K[2][0], (1 - em) * K[2][1], (1 - 2 * em) * K[2][2]])
-            right.append((em - 1) * self.gw)
-        else:
-            rows.append([self.zero, self.zero, self.mpmath.mpf(1)])
-            right.append(self.zero)
-        columns = list(zip(*rows, strict=True))
-        divisor = _determinant(columns)
-        if not divisor:
-            return None
-        replaced = ([*columns[:k], right, *columns[k + 1 :]] for k in range(3))
-        return [_determinant(three) / divisor for three in replaced]
+    # Equations 15, 16 (or no slip at separation) and 18 for Pn, Pt and the moment
+    K = [[_dot(row, column) for column in changes] for row in relative]
+    e, em = g["E"], g["EM"]
+    moment = [(1 - em) * K[2][0], (1 - em) * K[2][1], (1 - 2 * em) * K[2][2]]
+    right = [-(1 + e) * gn, -gt, (em - 1) * gw]
+    no_slip = _solve_three([K[0], K[1], moment], right)
+    sliding = _solve_three([K[0], [-mu, 1, 0], moment], [right[0], 0, right[2]])
+    P = no_slip if is_pivot else sliding
+    if P is None:
+        return {}
+    after = [
+        _total(v, *(x * p for x, p in zip(column, P, strict=True)))
+        for v, column in zip(before, zip(*changes, strict=True), strict=True)
+    ]
+    both = [_total(u, v) for u, v in zip(before, after, strict=True)]
+    works = [-p * _dot(row, both) / 2 for p, row in zip(P, relative, strict=True)]
+    lost, size = _total(*works), mpmath.hypot(P[0], P[1])
+    ma, mb = 1 / g["MA"], 1 / g["MB"]
+    shared = max(lost, 0) * (1 if ma and mb else 2)
+    f: dict[str, Number] = dict(zip(FINAL_STATE, after, strict=True))
+    f |= dict(zip(("ELN", "ELT", "ELM"), works, strict=True))
+    f |= dict(zip(("PN", "PT", "PM"), P, strict=True))
+    for suffix, energy, (ax, ay, wa, bx, by, wb) in (("", "KI", before), ("F", "KF", after)):
+        f[f"XA{suffix}"], f[f"YA{suffix}"] = _total(ax, d3 * wa), _total(ay, -d4 * wa)
+        f[f"XB{suffix}"], f[f"YB{suffix}"] = _total(bx, -d1 * wb), _total(by, d2 * wb)
+        pairs = zip(masses, (ax, ay, wa, bx, by, wb), strict=True)
+        f[energy] = mpmath.fsum(m * v * v for m, v in pairs if v) / 2  # infinite bodies rest
+    if is_point:
+        f |= {"WAF": g["WA"], "WBF": g["WB"]}
+    if f["KI"]:
+        f["LOSS"] = 100 * lost / f["KI"]
+    if no_slip and no_slip[0]:
+        f["MUC"] = no_slip[1] / no_slip[0]
+    # one line a result
+    f["VC"] = -gn
+    f["VS"] = -e * gn
+    f["EESA"] = mpmath.sqrt(shared * ma)
+    f["EESB"] = mpmath.sqrt(shared * mb)
+    f["DVA"] = ma * size
+    f["DVB"] = mb * size
+    f["MUP"] = mu
+    return f
 
-    def after(self, P: Sequence[Number]) -> list[Number]:
-        """Return the final velocities, in the order of `VELOCITIES`."""
-        columns = zip(*self.relative, strict=True)
-        return [
-            _total(v, *(j * m * p for j, p in zip(column, P, strict=True)))
-            for v, column, m in zip(self.before, columns, self.inverse, strict=True)
-        ]
 
-    def results(self) -> dict[str, Number]:
-        """Return the results."""
-        g, mpmath = self.g, self.mpmath
-        no_slip = self.impulse(True)
-        P = no_slip if self.is_pivot else self.impulse(False)
-        if P is None:
-            return {}
-        after = self.after(P)
-        both = [_total(u, v) for u, v in zip(self.before, after, strict=True)]
-        works = [-p * _dot(row, both) / 2 for p, row in zip(P, self.relative, strict=True)]
-        lost, size = _total(*works), mpmath.hypot(P[0], P[1])
-        initial, final = self.energy(self.before), self.energy(after)
-        ma, mb = self.inverse[0], self.inverse[3]
-        shared = max(lost, self.zero) * (1 if ma and mb else 2)
-        f: dict[str, Number] = dict(zip(FINAL_STATE, after, strict=True))
-        f |= self.contact_velocities(self.before, "") | self.contact_velocities(after, "F")
-        f |= dict(zip(("ELN", "ELT", "ELM"), works, strict=True))
-        f |= dict(zip(("PN", "PT", "PM"), P, strict=True))
-        if self.is_point:
-            f |= {"WAF": g["WA"], "WBF": g["WB"]}
-        if initial:
-            f["LOSS"] = 100 * lost / initial
-        if no_slip and no_slip[0]:
-            f["MUC"] = no_slip[1] / no_slip[0]
-        # one line a result
-        f["VC"] = -self.gn
-        f["VS"] = -g["E"] * self.gn
-        f["KI"] = initial
-        f["KF"] = final
-        f["EESA"] = mpmath.sqrt(shared * ma)
-        f["EESB"] = mpmath.sqrt(shared * mb)
-        f["DVA"] = ma * size
-        f["DVB"] = mb * size
-        f["MUP"] = self.mu
-        return f
-
-    def contact_velocities(self, six: Sequence[Number], suffix: str) -> dict[str, Number]:
-        """Return XA YA XB YB of lines 340, 700 and 710."""
-        ax, ay, wa, bx, by, wb = six
-        return {
-            f"XA{suffix}": _total(ax, self.d3 * wa),
-            f"YA{suffix}": _total(ay, -self.d4 * wa),
-            f"XB{suffix}": _total(bx, -self.d1 * wb),
-            f"YB{suffix}": _total(by, self.d2 * wb),
-        }
-
-    def energy(self, six: Sequence[Number]) -> Number:
-        """Return the kinetic energy; an infinite body is at rest."""
-        pairs = zip(self.inertias, six, strict=True)
-        return self.mpmath.fsum(m * v * v for m, v in pairs if not self.mpmath.isinf(m)) / 2
+def _direction(degrees: Number) -> tuple[Number, Number]:
+    """Return sine and cosine of an angle."""
+    return _mpmath().sinpi(degrees / 180), _mpmath().cospi(degrees / 180)

@@ -11,22 +11,19 @@ from numpy.typing import ArrayLike, NDArray
 from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
-from .kernel import FUNCTIONS, Kernel, address
-from .plan import COMPILED, FORMULAS, QUANTITIES, Plan, plan
+from .kernel import Kernel, addresses, run_formulas
+from .plan import COMPILED, FORMULAS, QUANTITIES, plan
 
 Array = NDArray[Any]
-Floats = NDArray[np.float64]
+Names = tuple[str, ...]
+Step = tuple[str, int]
 
 BODIES = 6.0  # M of bodies
 POINT = 4.0  # M of point masses
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
-"""Columns that the impact of a point mass does not use."""
-HEADINGS = ("TA", "TB")
-"""Columns of these that the direction of the force is measured from: NaN if not given."""
-_ALL = tuple(RESULTS)
-_NAMES = frozenset(QUANTITIES)
-_UNUSED = dict.fromkeys(("MA", "MB", "IA", "IB"), 1.0)
-"""Usable numbers, besides 0, for columns that no wanted result needs."""
+"""Columns that the impact of a point mass does not use; NaN where not given."""
+_UNUSED = {**dict.fromkeys(SCENE, 0.0), **dict.fromkeys(("MA", "MB", "IA", "IB"), 1.0)}
+"""Usable numbers for columns that no wanted result needs."""
 
 
 def solve(
@@ -96,15 +93,11 @@ def solve(
     array([44.43, 57.47, 57.56])
     """
     if results is None:
-        results = _ALL if out is None else tuple(out)
+        results = tuple(RESULTS if out is None else out)
     wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
-    given = _read_columns(columns, needed)
-    shape, inputs, varying = _flatten(given)
-    kernel = _kernel(wanted, varying)
-    arrays = kernel.compute(inputs, shape, out, threads)
-    if shape == () and out is None:
-        return {name: array[()] for name, array in arrays.items()}
-    return arrays
+    shape, inputs, varying = _flatten(_read_columns(columns, needed))
+    arrays = _kernel(wanted, varying).compute(inputs, shape, out, threads)
+    return arrays if shape or out else _numbers(arrays)
 
 
 def evaluate(
@@ -153,20 +146,17 @@ def evaluate(
     >>> print(impact88.evaluate(scene, ["MUC"])[0]["MUC"].round(3))
     0.932
     """
-    names = tuple(split_names(wanted)) if isinstance(wanted, str) else tuple(wanted)
-    given = {name: _as_doubles(name, value) for name, value in known.items() if name in _NAMES}
-    _complete(given)
-    shape, inputs, varying = _flatten(given)
-    lacking, kernel, following = _evaluation(names, frozenset(given), varying)
-    values: dict[str, Any] = {n: np.float64(x) if type(x) is float else x for n, x in given.items()}
-    if kernel is not None:
-        values.update(kernel.compute(inputs, shape, None, 1))
-    with np.errstate(all="ignore"):
-        for name in following:
-            formula = FORMULAS[name]
-            computed = FUNCTIONS[name](*[values[operand] for operand in formula.takes])
-            for quantity, array in zip(formula.gives, computed, strict=True):
-                values.setdefault(quantity, array)
+    names = tuple(split_names(wanted))
+    values = {x: _as_doubles(x, value) for x, value in known.items() if x in QUANTITIES}
+    _complete_points(values)
+    shape, inputs, varying = _flatten(values)
+    kernel, following, lacking = _evaluation(names, frozenset(values), varying)
+    values = {
+        x: np.float64(value) if type(value) is float else value for x, value in values.items()
+    }
+    if kernel.wanted:
+        values |= kernel.compute(inputs, shape)
+    run_formulas(following, values)
     results = {name: values[name] for name in names if name not in lacking}
     for name, array in results.items():
         if array.shape != shape:
@@ -221,7 +211,7 @@ def prepared(
         raise UserError(f"no scene name is given; expected some of {' '.join(SCENE)}")
     if len(set(columns)) < len(columns):
         raise UserError(f"a name appears twice in {' '.join(columns)}; expected each once")
-    wanted, _ = _needed_columns(_ALL if results is None else tuple(split_names(results)))
+    wanted = tuple(RESULTS if results is None else split_names(results))
     return Prepared(columns, wanted, {} if scene is None else scene)
 
 
@@ -250,16 +240,12 @@ class Prepared:
         self.names = names
         self.results, needed = _needed_columns(results)
         stays = {name: value for name, value in needed.items() if name not in names}
-        self._scene = {}
-        for name, value in _read_columns(scene, stays).items():
-            if np.size(value) != 1:
-                raise UserError(f"{name} has {np.size(value)} numbers; expected one that stays")
-            self._scene[name] = float(np.reshape(value, ()))
-        self._kernel = _kernel(self.results, frozenset(names).intersection(needed))
-        self._rows = [self.names.index(name) for name in self._kernel.changing]
-        self._fixed = np.array([self._scene[name] for name in self._kernel.fixed])
-        start = address(self._fixed)
-        self._starts = list(range(start, start + self._fixed.nbytes, 8))
+        shape, self._scene, varying = _flatten(_read_columns(scene, stays))
+        if varying:
+            raise UserError(f"{' '.join(varying)}: {shape} numbers; expected one that stays")
+        self._kernel = _kernel(self.results, frozenset(names))
+        self._numbers = np.array([self._scene[name] for name in self._kernel.fixed])
+        self._rows = [names.index(name) for name in self._kernel.changing]
 
     def __call__(self, values: ArrayLike) -> dict[str, Any]:
         """Return the results of scenes.
@@ -279,33 +265,32 @@ class Prepared:
         UserError
             For rows that do not fit ``names``.
         """
-        block = self._block(values)
-        shape = block.shape[1:]
-        count = math.prod(shape)
-        if self._kernel.is_compiled:
-            arrays, starts = self._kernel.new_results(shape)
-            first, size = address(block), 8 * count
-            rows = [first + size * row for row in self._rows]
-            self._kernel.run_at([*self._starts, *rows, *starts], count, 1)
-        else:
-            columns = dict(zip(self.names, block, strict=True))
-            arrays = solve({**self._scene, **columns}, self.results)
-        return {name: array[()] for name, array in arrays.items()} if shape == () else arrays
-
-    def _block(self, values: Any) -> Floats:
-        """Return the rows of a call as one array. Raises UserError."""
         try:
-            block = np.ascontiguousarray(values, np.float64)
-        except (TypeError, ValueError):  # numbers and arrays mixed, texts, or neither
-            rows = values if isinstance(values, list | tuple) else []
-            arrays = [np.array(_as_doubles(*x)) for x in zip(self.names, rows, strict=False)]
-            _common_shape(dict(zip(self.names, arrays, strict=False)))
-            block = np.array(np.broadcast_arrays(*arrays))
-        if not block.flags.aligned:
-            block = block.copy()
+            block = np.asarray(values, np.float64)
+        except (TypeError, ValueError):
+            block = self._mixed(values)
         if len(block) != len(self.names):
             raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
-        return block
+        if not block.flags.carray:
+            block = block.copy()
+        shape = block.shape[1:]
+        if self._kernel.is_compiled:
+            arrays, starts = self._kernel.new_arrays(shape)
+            (first,) = addresses([block])
+            size = 8 * math.prod(shape)
+            places = [first + row * size for row in self._rows] + starts
+            self._kernel.run_at(self._numbers, places, size // 8, 1)
+        else:
+            rows = dict(zip(self.names, block.reshape(len(block), -1), strict=True))
+            arrays = self._kernel.compute(self._scene | rows, shape)
+        return arrays if shape else _numbers(arrays)
+
+    def _mixed(self, values: Any) -> Array:
+        """Return numbers, arrays and texts as rows of one shape. Raises UserError."""
+        rows = zip(self.names, values, strict=False)
+        columns = {name: _as_doubles(name, value) for name, value in rows}
+        shape, _, _ = _flatten(columns)
+        return np.array([np.broadcast_to(x, shape) for x in columns.values()])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes an equal function of: no addresses."""
@@ -313,61 +298,60 @@ class Prepared:
 
 
 @lru_cache(maxsize=512)
-def _kernel(wanted: tuple[str, ...], varying: frozenset[str]) -> Kernel:
+def _kernel(wanted: Names, varying: frozenset[str]) -> Kernel:
     """Return the computation of checked results."""
-    return Kernel(plan((*wanted, "fit")), wanted, varying, True)
+    return Kernel(plan((*wanted, "fit")).steps, wanted, varying, True)
 
 
 @lru_cache(maxsize=512)
 def _evaluation(
-    wanted: tuple[str, ...], known: frozenset[str], varying: frozenset[str]
-) -> tuple[dict[str, tuple[str, ...]], Kernel | None, tuple[str, ...]]:
-    """Return what quantities lack, the computation by the library, and the formulas to run after
-    it: those of `consequences`, and what they lead to."""
+    wanted: Names, known: frozenset[str], varying: frozenset[str]
+) -> tuple[Kernel, list[Step], dict[str, Names]]:
+    """Return the computation of quantities by the library; the formulas that numpy runs after it,
+    those of `consequences`, those that give what is known, and what they lead to; and what the
+    quantities lack that do not follow."""
     check_names(wanted, QUANTITIES, "quantity of an impact")
     steps, _, lacking = plan(wanted, known)
-    following: list[str] = []
-    needed: set[str] = set(wanted)
+    first: list[Step] = []
+    following: list[Step] = []
     later: set[str] = set()
-    for name, _ in steps:
-        formula = FORMULAS[name]
-        if name not in COMPILED or not later.isdisjoint(formula.takes):
-            following.append(name)
+    needed = set(wanted)
+    for step in steps:
+        formula = FORMULAS[step[0]]
+        is_compiled = formula.name in COMPILED and known.isdisjoint(formula.gives)
+        if is_compiled and later.isdisjoint(formula.takes):
+            first.append(step)
+        else:
+            following.append(step)
             later.update(formula.gives)
             needed.update(formula.takes)
-    first = [step for step in steps if step[0] not in following]
-    given = {name for step, _ in first for name in COMPILED[step].gives}
-    results = tuple(name for name in QUANTITIES if name in needed & given and name not in known)
-    if not results:
-        return lacking, None, tuple(following)
-    inputs = {name for step, _ in first for name in COMPILED[step].takes} & known
-    part = Plan(tuple(first), tuple(name for name in QUANTITIES if name in inputs), {})
-    return lacking, Kernel(part, results, varying, False), tuple(following)
+    results = [x for name, _ in first for x in FORMULAS[name].gives if x in needed]
+    return Kernel(first, results, varying, False), following, lacking
 
 
 @lru_cache(maxsize=512)
-def _needed_columns(
-    results: str | tuple[str, ...],
-) -> tuple[tuple[str, ...], Mapping[str, float | None]]:
+def _needed_columns(results: str | Names) -> tuple[Names, Mapping[str, float | None]]:
     """Return result names, each once, and the columns that are read, each with the value to take
     where it is not given, None for one that the results need. Raises UserError."""
-    names = tuple(split_names(results))
-    check_names(names, RESULTS, "result")
-    if not names:
+    wanted = tuple(dict.fromkeys(split_names(results)))
+    check_names(wanted, RESULTS, "result")
+    if not wanted:
         raise UserError(f"no result is asked for; expected some of {' '.join(RESULTS)}")
-    wanted = tuple(dict.fromkeys(names))
     needed = plan(wanted).inputs
-    return wanted, {
-        name: None if name in needed else _UNUSED.get(name, 0.0)
-        for name in plan((*wanted, "fit")).inputs
-    }
+    columns = plan((*wanted, "fit")).inputs
+    return wanted, {name: None if name in needed else _UNUSED[name] for name in columns}
 
 
-def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str, float | Floats]:
+def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str, Any]:
     """Return the needed columns of a mapping or frame as doubles. Raises UserError."""
-    names = columns if isinstance(columns, Mapping) else _frame_names(columns)
+    names = columns
+    if not isinstance(columns, Mapping):  # a frame: of pyarrow, or of pandas or polars
+        names = getattr(columns, "column_names", getattr(columns, "columns", None))
+        if names is None:
+            kind = type(columns).__name__
+            raise UserError(f"a {kind} has no columns; expected a mapping or a data frame")
     given = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
-    _complete(given)
+    _complete_points(given)
     if len(given) < len(needed):
         for name, value in needed.items():
             if value is not None:
@@ -377,70 +361,56 @@ def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str,
     return given
 
 
-def _complete(given: dict[str, Any]) -> None:
-    """Add M where it is not given, and 0 for what point masses do not use."""
+def _complete_points(given: dict[str, Any]) -> None:
+    """Add M where it is not given, and NaN for what point masses do not use."""
     m = given.setdefault("M", BODIES)
-    if m is not BODIES and (m == POINT if type(m) is float else m.size and (m == POINT).all()):
-        headings = {name: given.get(name, math.nan) for name in HEADINGS}
-        given.update(dict.fromkeys(UNUSED_BY_POINTS, 0.0) | headings)
+    if m is not BODIES and np.all(m == POINT):
+        for name in UNUSED_BY_POINTS:
+            given.setdefault(name, math.nan)
 
 
-def _frame_names(frame: Any) -> frozenset[object]:
-    """Return the names of a frame's columns. Raises UserError for what is no frame."""
-    names = getattr(frame, "column_names", None)  # pyarrow
-    if names is None:
-        names = getattr(frame, "columns", None)  # pandas, polars
-    if names is None or callable(names):
-        kind = type(frame).__name__
-        raise UserError(f"a {kind} has no columns; expected a mapping or a data frame")
-    return frozenset(names)
-
-
-def _as_doubles(name: str, value: Any) -> float | Floats:
+def _as_doubles(name: str, value: Any) -> Any:
     """Return a column's numbers. Raises UserError for what is no number."""
     kind = type(value)
     if kind is float or (kind is np.ndarray and value.dtype == np.float64):
-        return value  # type: ignore[no-any-return]
-    if kind is int or kind is np.float64:
-        return float(value)
+        return value
     if isinstance(value, np.ma.MaskedArray):
-        masked: Any = value.astype(np.float64)
-        value = masked.filled(np.nan)
+        numbers: Any = value.astype(np.float64)
+        value = numbers.filled(np.nan)
     try:
         array = np.asarray(value)
     except ValueError:
         raise UserError(f"{name} is {quoted(value)}; expected a number or an array") from None
-    if array.dtype.kind in "fiub":
-        return array.astype(np.float64, copy=False)
-    numbers = np.array([_number(name, at, cell) for at, cell in enumerate(array.flat)], np.float64)
-    return numbers.reshape(array.shape)
+    if array.dtype.kind not in "fiub":
+        cells = [_number(name, at, cell) for at, cell in enumerate(array.flat)]
+        array = np.array(cells).reshape(array.shape)
+    return array.astype(np.float64, copy=False)
 
 
 def _number(name: str, at: int, cell: Any) -> float:
     """Return the number of a cell, NaN for one that is missing. Raises UserError."""
-    if isinstance(cell, str):
-        try:
+    try:
+        if cell is None or type(cell).__name__ == "NAType":  # of pandas
+            return math.nan
+        if isinstance(cell, str):
             return to_double(cell)
-        except ValueError:
-            pass
-    elif cell is None or type(cell).__name__ in ("NAType", "NaTType"):  # of pandas
-        return math.nan
-    elif not isinstance(cell, complex | np.complexfloating):
-        try:
+        if not isinstance(cell, complex):
             return float(cell)
-        except (TypeError, ValueError):
-            pass
+    except (TypeError, ValueError):
+        pass
     raise UserError(f"{name} = {quoted(cell)} at position {at} is no number; expected a number")
 
 
-def _flatten(
-    given: Mapping[str, Any],
-) -> tuple[tuple[int, ...], dict[str, Any], frozenset[str]]:
+def _flatten(given: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any], frozenset[str]]:
     """Return the shape that columns broadcast to, the columns flat, those of one number as a
     number, and the names of the others. Raises UserError where they do not broadcast."""
     arrays = {name: x for name, x in given.items() if type(x) is not float}
-    shape = _common_shape(arrays)
-    flat: dict[str, Any] = dict(given)
+    try:
+        shape = np.broadcast_shapes(*{array.shape for array in arrays.values()})
+    except ValueError:
+        sizes = ", ".join(f"{n} {x.shape}" for n, x in arrays.items() if x.shape)
+        raise UserError(f"columns do not broadcast together: {sizes}") from None
+    flat = dict(given)
     varying = []
     for name, array in arrays.items():
         if array.size == 1:
@@ -452,13 +422,6 @@ def _flatten(
     return shape, flat, frozenset(varying)
 
 
-def _common_shape(arrays: Mapping[str, Any]) -> tuple[int, ...]:
-    """Return the shape that arrays broadcast to. Raises UserError where they do not."""
-    shapes: set[tuple[int, ...]] = {array.shape for array in arrays.values()}
-    if len(shapes) == 1:
-        return shapes.pop()
-    try:
-        return np.broadcast_shapes(*shapes)
-    except ValueError:
-        sizes = ", ".join(f"{n} {x.shape}" for n, x in arrays.items() if x.shape)
-        raise UserError(f"columns do not broadcast together: {sizes}") from None
+def _numbers(arrays: Mapping[str, Array]) -> dict[str, Any]:
+    """Return arrays of one number as numbers."""
+    return {name: array[()] for name, array in arrays.items()}
