@@ -57,7 +57,7 @@ def test_pages_of_captured_runs(step):
 def test_memory_after_captured_runs(printed):
     """By the listing as it is printed into the library, and by its steps, walked."""
     steps = kernel.listing().steps
-    rows = np.zeros(len(CASES), row_type(len(steps.variables), ELEMENTS, len(PRINTED), 0))
+    rows = np.zeros(len(CASES), row_type(len(steps.variables), ELEMENTS, len(PRINTED)))
     Program(steps, in_library=printed).run(list(COLUMNS.values()), rows)
     for row, case in enumerate(CASES):
         reals = {

@@ -601,13 +601,13 @@ static uint64_t packed(real x)
 }
 
 /* Return the digest of the listing's steps for which this file was compiled. */
-EXPORT const char *applesoft_digest(void) { return LISTING; }
+EXPORT const char *applesoft_source(void) { return LISTING; }
 
 /* Run a program on `count` scenes. text: for each input the texts of all scenes, each ended by a
    newline, or one text for all where `single`. row: the results of each scene, as `row_type` in
-   kernel.py has them. */
+   kernel.py has them. pages: PAGE characters for each scene, or null. */
 EXPORT void applesoft_run(const program *p, const char *const *text, const uint8_t *single, int64_t count, int inputs,
-                          int variables, int elements, int fields, int page, char *row)
+                          int variables, int elements, int fields, char *row, char *pages)
 {
     const char *input[INPUTS];
     run its;
@@ -618,7 +618,7 @@ EXPORT void applesoft_run(const program *p, const char *const *text, const uint8
         memset(&its, 0, sizeof its);
         its.field = (char(*)[FIELD])(words + 1 + variables + elements);
         its.most = fields;
-        its.page = page ? its.field[fields] : 0;
+        its.page = pages ? pages + n * PAGE : 0;
         ending[0] = run_once(&its, p, input);
         ending[1] = its.line;
         ending[2] = its.page_size;
@@ -628,7 +628,7 @@ EXPORT void applesoft_run(const program *p, const char *const *text, const uint8
         for (int k = 0; k < elements; k++) words[1 + variables + k] = packed(its.array[k]);
         for (int k = 0; k < inputs; k++)
             if (!single[k]) input[k] = strchr(input[k], '\n') + 1;
-        row = its.field[fields] + page;
+        row = (char *)(its.field + fields);
     }
 }
 

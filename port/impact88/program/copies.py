@@ -89,8 +89,8 @@ class ListingCopy:
                 "formulas of one number such as UX = S * 1.46667",
                 self.file,
             )
-        asked = dict.fromkeys(key for verb, keys in self._lists if verb for key in keys)
-        if names := [key for key in asked if key not in self._names and key[-1] != "$"]:
+        asked = [key for verb, keys in self._lists if verb for key in keys if key[-1] != "$"]
+        if names := [key for key in asked if key not in self._names]:
             raise UserError(
                 f"asks for {', '.join(names)} (INPUT or READ); expected a copy that asks for a "
                 "scene's values alone",
@@ -128,8 +128,9 @@ class ListingCopy:
         except EndOfInput:
             raise UserError("asks for more than a scene holds", self.file) from None
         except TooManyStatements:
-            message = f"does not end within {MAX_STATEMENTS:,} statements"
-            raise UserError(message, self.file) from None
+            raise UserError(
+                f"does not end within {MAX_STATEMENTS:,} statements", self.file
+            ) from None
 
     def pages(self, columns: Mapping[str, Any]) -> list[str]:
         """Return what the copy prints for many scenes.
@@ -152,10 +153,9 @@ class ListingCopy:
         from . import kernel, replay  # numpy is needed for many scenes only
 
         program = kernel.Program(self.steps, list(self._variables)) if self.steps else None
-        _, pages = replay.run_scenes(
-            program, columns, lambda _, scene: self.run(scene).printout, (0, 0, kernel.PAGE)
-        )
-        return pages
+        return replay.run_scenes(
+            program, columns, lambda _, scene: self.run(scene).printout, (0, 0), pages=True
+        )[1]
 
     @cached_property
     def steps(self) -> Steps | None:

@@ -56,9 +56,9 @@ def print_c(program: Steps) -> str:
         "real stack[STACK];",
         "#undef OP\n#define OP(f) called_##f",
         *_statements(program.steps),
-        "}",
+        "}\n",
     )
-    return "\n".join(rows) + "\n"
+    return "\n".join(rows)
 
 
 def _statements(steps: list[tuple[str, int]]) -> Iterator[str]:

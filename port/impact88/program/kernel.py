@@ -42,21 +42,19 @@ class Source(ctypes.Structure):
     )
 
 
-def row_type(variables: int, elements: int, fields: int, page: int) -> npt.DTypeLike:
+def row_type(variables: int, elements: int, fields: int) -> npt.DTypeLike:
     """Return the type of a run's results, as applesoft.c writes them.
 
     ``code``, ``line``: the error's code, 0 for none, and the line of the end; ``size``: characters
     of the page; ``rows``: those of the array, 0 before DIM; ``assigned``: a bit for each variable;
     ``reals``: variables as stored bytes; ``array``: its elements, first subscript fastest;
-    ``fields``: the numbers printed, in order; ``page``: all that was printed, if ``page`` is
-    `PAGE`."""
+    ``fields``: the numbers printed, in order."""
     return [
         *((name, "i4") for name in ("code", "line", "size", "rows")),
         ("assigned", "u8"),
         ("reals", "u8", (variables,)),
         ("array", "u8", (elements,)),
         ("fields", f"S{FIELD}", (fields,)),
-        ("page", "u1", (page,)),
     ]
 
 
@@ -85,11 +83,11 @@ class Program:
             starts.ctypes.data,
         )
 
-    def run(self, columns: Sequence[Sequence[str]], rows: Rows) -> None:
+    def run(self, columns: Sequence[Sequence[str]], rows: Rows, pages: Any = None) -> None:
         """Run the program on some scenes, and fill a row of results for each.
 
         ``columns``: for each input the texts of all scenes, or one for all, of one line of ASCII
-        each."""
+        each; ``pages``: a buffer of `PAGE` characters for each scene, None if they are not kept."""
         texts = ["\n".join((*column, "")).upper().encode("ascii") for column in columns]
         compiled_library().applesoft_run(
             ctypes.byref(self.source),
@@ -97,8 +95,9 @@ class Program:
             bytes(len(column) == 1 for column in columns),
             ctypes.c_int64(len(rows)),
             len(columns),
-            *(rows[name].shape[1] for name in ("reals", "array", "fields", "page")),
+            *(rows[name].shape[1] for name in ("reals", "array", "fields")),
             ctypes.c_void_p(rows.ctypes.data),
+            pages,
         )
 
 
@@ -115,7 +114,7 @@ def listing() -> Program:
 
 @cache
 def _library() -> Any:
-    return library.loaded("applesoft_digest", digest(listing().steps))
+    return library.loaded("applesoft_source", digest(listing().steps))
 
 
 def compiled_library() -> Any:

@@ -6,6 +6,7 @@ library the port runs each scene. Both give the Apple's own bits.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import re
 from collections.abc import Callable, Mapping
@@ -254,8 +255,9 @@ def replay(
     >>> impact88.replay(impact88.sample(1)).printed("XB").tolist()
     ['14.51']
     """
-    sizes = ROWS * COLUMNS, len(PRINTED), PAGE if pages else 0
-    rows, printouts = run_scenes(kernel.listing(), columns, _run_port, sizes, threads)
+    rows, printouts = run_scenes(
+        kernel.listing(), columns, _run_port, (ROWS * COLUMNS, len(PRINTED)), pages, threads
+    )
     return Replay(rows, printouts if pages else None)
 
 
@@ -289,14 +291,15 @@ def run_scenes(
     program: Program | None,
     columns: Mapping[str, Any],
     run_singly: Callable[[Rows, Scene], str],
-    sizes: tuple[int, int, int],
+    sizes: tuple[int, int],
+    pages: bool,
     threads: int | None = None,
 ) -> tuple[Rows, list[str]]:
     """Return the rows of results of scenes, and their printouts, "" without pages.
 
     ``run_singly``: runs a scene that the library leaves, which are all without it, fills its row,
-    and returns its printout; ``sizes``: of array, fields and page in a row, see `kernel.row_type`.
-    Raises UserError for columns that cannot be used."""
+    and returns its printout; ``sizes``: of array and fields in a row, see `kernel.row_type`. Raises
+    UserError for columns that cannot be used."""
     cells = read_columns(columns)
     variables = len(program.steps.variables) if program else 0
     count = max({len(column) for column in cells.values()} - {1}, default=1)
@@ -305,19 +308,26 @@ def run_scenes(
 
     def work(start: int) -> None:
         part = rows[start : start + BLOCK]
+        buffer = ctypes.create_string_buffer(PAGE * len(part)) if pages else None
         if program and kernel.compiled_library():
             texts = [cells[name] for name in program.names]
-            program.run([t if len(t) == 1 else t[start : start + BLOCK] for t in texts], part)
+            program.run(
+                [t if len(t) == 1 else t[start : start + BLOCK] for t in texts], part, buffer
+            )
         else:
             part["code"] = OUTSIDE
-        for row in range(len(part)) if part["page"].size else part["code"].nonzero()[0].tolist():
-            code = part["code"][row]
+        characters = buffer.raw if buffer else b""
+        codes, sizes = part["code"].tolist(), part["size"].tolist()
+        for row in range(len(part)) if characters else part["code"].nonzero()[0].tolist():
+            code = codes[row]
             if code in (OUTSIDE, CODES["OVERFLOW"]):  # of a text, too, that is no number
                 scene = _scene(cells, start + row)
             if code == OUTSIDE:
                 printouts[start + row] = run_singly(part[row : row + 1], scene)
             else:
-                printouts[start + row] = _printout(part[row])
+                page = characters[PAGE * row : PAGE * row + sizes[row]].decode("ascii")
+                message = f"\n{_message(part[row]).replace(' IN', BELL + ' IN')}" if code else ""
+                printouts[start + row] = _DISK_COMMAND.sub("", page) + message
 
     starts = range(0, len(rows), BLOCK)
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:  # the library runs without the GIL
@@ -331,12 +341,6 @@ def _scene(cells: Cells, row: int) -> Scene:
     scene = Scene(texts, source=f"row {row + 1}")
     scene.check_typed()
     return scene
-
-
-def _printout(row: np.void) -> str:
-    """Return a page as a disk system lets it pass, with the error that ended it."""
-    page = _DISK_COMMAND.sub("", row["page"].tobytes()[: row["size"]].decode("ascii"))
-    return f"{page}\n{_message(row).replace(' IN', BELL + ' IN')}" if row["code"] else page
 
 
 # --- one scene by the port ---

@@ -113,29 +113,27 @@ def start(
     The printout, with any error message, goes to the console; that of the returned Run is empty.
     Raises UserError for an unknown arithmetic, and `console.EndOfInput`.
     """
-    if isinstance(arithmetic, Arithmetic):
-        chosen = arithmetic
-    else:
+    if not isinstance(arithmetic, Arithmetic):
         check_names([arithmetic], ARITHMETICS, "arithmetic")
-        chosen = ARITHMETICS[arithmetic]
+        arithmetic = ARITHMETICS[arithmetic]
     error, zero_determinant = None, False
     names: Mapping[str, Any]
     try:
-        with _stopping(after_line, chosen) if after_line else nullcontext():
-            names = listing.impact(data, chosen, console)
+        with _stopping(after_line, arithmetic) if after_line else nullcontext():
+            names = listing.impact(data, arithmetic, console)
     except listing.End as end:
         zero_determinant = True
         names = _failure(end.__traceback__)[1]
     except Exception as exception:
-        error = chosen.error(exception)
+        error = arithmetic.error(exception)
         if error is None:
             raise
         error.line, names = _failure(exception.__traceback__)
         replies_read = console.reply.begun if console.reply else 0
-        if variable := _new_variable(error.line, names, chosen.unset, replies_read):
-            names = {**names, variable: chosen.zero}
+        if variable := _new_variable(error.line, names, arithmetic.unset, replies_read):
+            names = {**names, variable: arithmetic.zero}
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
-    reals, array = _variables(names, chosen.unset)
+    reals, array = _variables(names, arithmetic.unset)
     return Run(
         "",
         error and error.message,
