@@ -91,7 +91,7 @@ def test_what_cannot_be_drawn_is_said() -> None:
 def test_findings_are_marked_in_the_text() -> None:
     page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")
     (exhibit,) = examine("paper.txt", page.replace("\n", "\r\n").encode())
-    assert exhibit.is_adverse
+    assert exhibit.result.verdict.name == "DIFFERS"
     assert "".join(text for text, _, _ in exhibit.pieces()) == exhibit.result.text.strip()
     html = verification_page([exhibit], examiner="J. Doe")
     assert re.search(r'<mark class="differs" title="[^"]*-13.263[^"]*">-13.268</mark>', html)

@@ -170,10 +170,6 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
     UserError
         For a case that gives too little, and for values that no impact has.
     """
-    equations = case.entries["M"].value
-    if equations not in (4, 6):
-        message = f"M = {equations:g}; expected 6, or 4 for point masses"
-        raise UserError(message, case.place("M"))
     is_scene = {*case.entries} <= {*SCENE, *POINTS}
     if is_scene and not evaluate(case.numbers, FINAL_VELOCITIES[:4])[1]:
         names = tuple(wanted) or (ALL if full else FORWARD)

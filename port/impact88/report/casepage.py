@@ -15,6 +15,7 @@ import numpy
 
 from ..errors import UserError, library, printable
 from ..files import replacing
+from ..printouts import words
 from ..version import __version__
 from .answers import Answer
 from .drawing import draw, to_png
@@ -81,6 +82,7 @@ def environment() -> Environment:
         undefined=jinja2.StrictUndefined,
     )
     templates.filters["printable"] = _displayed_text
+    templates.globals["words"] = words
     return templates
 
 

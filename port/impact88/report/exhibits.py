@@ -46,11 +46,6 @@ class Exhibit:
     digest: str = ""
 
     @property
-    def is_adverse(self) -> bool:
-        """True if the page differs."""
-        return self.result.verdict is Verdict.DIFFERS
-
-    @property
     def picture(self) -> Picture | None:
         """The picture of the page with its marked places, None for a text."""
         if self.page is None:
@@ -58,17 +53,6 @@ class Exhibit:
         from ..pictures.exhibit import draw_page
 
         return draw_page(self.page)
-
-    def sections(self) -> dict[str, list[str]]:
-        """Return sentences by heading: on what was read and compared, findings, explanations,
-        errors that the page could not reveal, the picture."""
-        scene = [f"{name} = {text}" for name, text in self.result.scene.items()]
-        return {
-            "": [line.strip() for line in words.write(self.result, brief=True)[1:]],
-            "Inputs with which it was compared": [" ".join(scene)] if scene else [],
-            "Errors that this page could not reveal": [*words.unseen_lines(self.result)],
-            "The picture": [*self.page.remarks] if self.page else [],
-        }
 
     def pieces(self) -> Iterator[tuple[str, str, str]]:
         """Yield the text in pieces: text, look ("" if unmarked) and note."""
