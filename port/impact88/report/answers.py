@@ -357,6 +357,11 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
     checked = impact.tests if impact.evidence.redundancy else ()
     shown = [name for name in names if name in values or name in impact.intervals]
+    fractions = {
+        result: {words.entry(impact, name): x for name, x in parts.items()}
+        for result, parts in impact.drivers.items()
+        if result in shown
+    }
     return Answer(
         "reconstruct",
         words.question(impact),
@@ -366,7 +371,7 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         evidence=words.evidence(impact, view),
         possible=not impact.is_adverse,
         sections={
-            "depends": _dependences({n: impact.drivers.get(n, {}) for n in shown}),
+            "depends": _dependences(fractions),
             "checked": tuple(words.check(impact, name, view) for name in checked),
             "assumed": words.assumptions(impact),
             "helps": words.advice(impact),
