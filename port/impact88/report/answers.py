@@ -49,6 +49,7 @@ UNUSABLE = (
 POINTS = ("CAF", "CAL", "CBF", "CBL")
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
+NOISE = 1e-9  # width of an interval over the value: so much is rounding
 MAX_DRIVERS = 3  # values named as those that make a result uncertain
 MIN_SHARE = 0.05  # of a result's variance, from which a value is named
 
@@ -218,7 +219,11 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
     }
     outputs = [name for name in values if name in BOUNDED]
     drawn = bounds(inputs, outputs, samples=DRAWS, seed=seed, correlations=case.correlations)
-    varying = {name: bound for name, bound in drawn.outputs.items() if bound.upper > bound.lower}
+    varying = {
+        name: bound
+        for name, bound in drawn.outputs.items()
+        if bound.upper - bound.lower > NOISE * abs(bound.nominal)
+    }
     fractions: dict[str, dict[str, float]] = {}
     for name, bound in varying.items():
         squares = {n: effect * effect for n, (_, effect) in bound.drivers.items()}

@@ -6,13 +6,12 @@ the same forms give whole pages. Nothing of a request is kept.
 
 from __future__ import annotations
 
-import io
 import os
 import traceback
 from collections.abc import Mapping
 from typing import Any
 
-from flask import Flask, Request, Response, abort, render_template, request
+from flask import Flask, Response, abort, render_template, request
 from jinja2 import ChoiceLoader
 from werkzeug.exceptions import HTTPException
 
@@ -22,7 +21,7 @@ from ..errors import UserError, printable
 from ..files import decode
 from ..program.run import run
 from ..program.scene import sample
-from ..report.answers import Answer, ask
+from ..report.answers import ask
 from ..report.casepage import case_page, drawing_of, environment, verification_page
 from ..report.exhibits import Exhibit, examine
 from .guard import HEADERS, MAX_BODY, PAGE_POLICY, REPORT_POLICY, refusal
@@ -36,17 +35,9 @@ HEADINGS = ("title", "case", "examiner", "date")
 VIEW = ("units", "axes", "headings")
 
 
-class MemoryRequest(Request):
-    """A request whose uploads stay in memory."""
-
-    def _get_file_stream(self, *_: Any, **__: Any) -> io.BytesIO:
-        return io.BytesIO()
-
-
 def application(port: int, token: str) -> Flask:
     """Return the application that answers at 127.0.0.1:``port`` below ``token``."""
     app = Flask(__name__, static_url_path=f"/{token}/static")
-    app.request_class = MemoryRequest
     app.config.update(MAX_CONTENT_LENGTH=MAX_BODY, MAX_FORM_MEMORY_SIZE=MAX_BODY)
     reports = environment()
     app.jinja_options = {"trim_blocks": True, "lstrip_blocks": True}
@@ -57,10 +48,7 @@ def application(port: int, token: str) -> Flask:
 
     @app.before_request
     def check() -> None:
-        status = refusal(
-            dict(request.headers), request.method, request.path, port=port, token=token
-        )
-        if status:
+        if status := refusal(dict(request.headers), request.method, request.path, port, token):
             abort(status)
 
     @app.after_request
@@ -69,8 +57,7 @@ def application(port: int, token: str) -> Flask:
         response.headers.update(HEADERS)
         return response
 
-    app.register_error_handler(UserError, _problem)
-    app.register_error_handler(Exception, _internal_error)
+    app.register_error_handler(Exception, _problem)
     for path, page in {"": printout, "collision": collision, "1988": program}.items():
         app.get(f"/{token}/{path}")(page)
     for reply in (verify, verification, fields, answer, report, scene, printed):
@@ -78,19 +65,16 @@ def application(port: int, token: str) -> Flask:
     return app
 
 
-def _problem(error: Exception, status: int = 422) -> tuple[str, int]:
-    """Return the message on a problem."""
-    return _show("problem.html", message=printable(str(error))), status
-
-
-def _internal_error(error: Exception) -> Any:
-    """Return the message on an error of this program; refusals as they are."""
+def _problem(error: Exception) -> Any:
+    """Return the message on bad input, or on an error of this program; refusals as they are."""
     if isinstance(error, HTTPException):
         return error
+    if isinstance(error, UserError):
+        return _show("problem.html", message=printable(str(error))), 422
     if os.environ.get("IMPACT88_DEBUG") == "1":
         traceback.print_exception(error)
     message = f"internal error; please report it: {error!r} (IMPACT88_DEBUG=1 prints its place)"
-    return _problem(RuntimeError(message), 500)
+    return _show("problem.html", message=printable(message)), 500
 
 
 def _show(part: str, whole: str = "layout.html", **context: Any) -> str:
@@ -172,8 +156,9 @@ def fields() -> str:
         source, data = upload
         texts, _ = read_toml(decode(data, source), source)
         Case.of(texts, source)
-        # the kind that has most of its names, and then of its entries
-        kind = max(KINDS, key=lambda name: _likeness(texts, KINDS[name].entries))
+        # the kind that has most of its names and entries
+        kinds = {name: {*kind.entries, *kind.entries.items()} for name, kind in KINDS.items()}
+        kind = max(kinds, key=lambda name: len(kinds[name] & {*texts, *texts.items()}))
     else:
         former = KINDS.get(request.form.get("was", ""), KINDS[DEFAULT_KIND]).entries
         texts = {n: text for n, text in _texts().items() if text != former.get(n)}
@@ -181,32 +166,23 @@ def fields() -> str:
     return _show("fields.html", "collision.html", **_fields(texts, kind))
 
 
-def _likeness(texts: Mapping[str, str], entries: Mapping[str, str]) -> tuple[int, int]:
-    """Return how many names, and how many whole entries, a file has in common with a kind."""
-    return len(texts.keys() & entries.keys()), len(texts.items() & entries.items())
-
-
 def _case() -> Case:
     """Return the case of a form. Raises UserError."""
     return Case.of(_texts(), "the form")
 
 
-def _answer() -> Answer:
-    """Return the answer to a form. Raises UserError."""
-    case = _case()
-    return answer_in_time(lambda: ask(case))
-
-
 def answer() -> str:
     """Return the answer to a form, with its drawing."""
-    result = _answer()
+    case = _case()
+    result = answer_in_time(lambda: ask(case))
     drawing, undrawn = drawing_of(result)
     return _show("answer.html", answer=result, drawing=drawing, undrawn=undrawn)
 
 
 def report() -> Response:
     """Return the report on a form's case."""
-    return _report(case_page(_answer()))
+    case = _case()
+    return _report(answer_in_time(lambda: case_page(ask(case))))
 
 
 def scene() -> Response:

@@ -30,7 +30,7 @@ REPORT_POLICY = f"{_COMMON}style-src 'unsafe-inline'"
 
 
 def refusal(
-    headers: Mapping[str, str], method: str, path: str, *, port: int, token: str
+    headers: Mapping[str, str], method: str, path: str, port: int, token: str
 ) -> int | None:
     """Return the status with which a request is refused, None if it is answered.
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future
-from threading import BoundedSemaphore, Thread
+from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
 from ..errors import UserError
@@ -13,7 +12,7 @@ T = TypeVar("T")
 MAX_SECONDS = 20.0  # of a question; a reconstruction takes 3, a scanned page 2
 MAX_QUESTIONS = 4  # computed at a time, those given up included
 
-_places = BoundedSemaphore(MAX_QUESTIONS)
+_threads = ThreadPoolExecutor(MAX_QUESTIONS)
 
 
 def answer_in_time(compute: Callable[[], T], seconds: float = MAX_SECONDS) -> T:
@@ -24,30 +23,18 @@ def answer_in_time(compute: Callable[[], T], seconds: float = MAX_SECONDS) -> T:
     compute : callable
         The function, without arguments.
     seconds : float, default 20
-        Time limit.
+        Time limit, in which other questions may have to end first.
 
     Raises
     ------
     UserError
-        After the time limit, and if too many questions are being computed.
+        After the time limit.
     """
-    if not _places.acquire(timeout=seconds):
-        raise UserError("other questions are still being computed; try again later")
-    future: Future[T] = Future()
-
-    def work() -> None:
-        try:
-            future.set_result(compute())
-        except BaseException as error:  # raised again where it was asked
-            future.set_exception(error)
-        finally:
-            _places.release()
-
-    # a thread cannot be stopped: one that is given up ends by itself, or with the process
-    Thread(target=work, daemon=True).start()
+    future = _threads.submit(compute)
     try:
         return future.result(seconds)
     except TimeoutError:
+        future.cancel()  # one that runs ends by itself
         raise UserError(
             f"took longer than {seconds:g} s; the commands of impact88 have no time limit"
         ) from None

@@ -82,8 +82,6 @@ def make_server(listener: socket.socket, port: int, token: str) -> Any:
         threads=THREADS,
         ident=None,
         max_request_body_size=MAX_BODY,
-        inbuf_overflow=2 * MAX_BODY,  # requests stay in memory
-        outbuf_overflow=8 * MAX_BODY,
         connection_limit=MAX_CONNECTIONS,
         backlog=BACKLOG,
         channel_timeout=SILENCE,
