@@ -4,7 +4,9 @@ import math
 import random
 from fractions import Fraction
 
-FOOT, POUND, GRAVITY = Fraction("0.3048"), Fraction("0.45359237"), Fraction("9.80665")
+FOOT = Fraction("0.3048")  # m
+POUND = Fraction("0.45359237")  # kg
+GRAVITY = Fraction("9.80665")  # m/s²
 PI = Fraction("3.1415926535897932384626433832795028841971")
 SLUG = POUND * GRAVITY / FOOT
 KINDS = {
@@ -45,7 +47,7 @@ def base_map(name: str, unit: str, view: tuple[str, str, str]) -> tuple[Fraction
     return (-size if axes and name in MIRRORED else size), Fraction(0)
 
 
-def notated(rng: random.Random, name: str, notation: int) -> tuple[str, str, Numbers]:
+def notation_of(rng: random.Random, name: str, notation: int) -> tuple[str, str, Numbers]:
     """Return a text, its unit, and its exact value, low, high and standard deviation."""
     _, limits, units = KINDS[KIND[name]]
     texts = [f"{rng.uniform(*limits):.{rng.choice((0, 1, 3, 6))}f}" for _ in range(3)]
@@ -81,7 +83,7 @@ def scene_file(seed: int) -> tuple[str, tuple[str, str, str], dict[str, Numbers]
     pairs = zip(("units", "axes", "headings"), view, strict=True)
     lines = [f'{word} = "{text}"' for word, text in pairs if text]
     for name in KIND:
-        words, unit, (value, *ends, sd) = notated(rng, name, rng.randrange(NOTATIONS))
+        words, unit, (value, *ends, sd) = notation_of(rng, name, rng.randrange(NOTATIONS))
         factor, offset = base_map(name, unit, view)
         numbers = [offset + factor * x if math.isfinite(x) else x for x in (value, *ends)]
         exact[name] = (numbers[0], min(numbers[1:]), max(numbers[1:]), abs(factor) * sd)

@@ -38,7 +38,7 @@ def refusal(text: str) -> str:
         ),
         ('MA = 1\n\nUX = "25 lb"', "crash.toml, line 3: UX = '25 lb': lb is not a unit"),
         ("MA = .9", "a number with a digit first (0.9)"),
-        ("MA = 1\nMA = 2", "and MA once"),
+        ("MA = 1\nMA = 2\n", "Cannot overwrite a value (at line 2, column 7)"),
         ("MA = true", "crash.toml, line 1: MA = True: expected a number or a text"),
         ("MA = [1]", "MA = [1]: expected"),
         ("[MA]\nvalues = 1", "crash.toml, line 1: MA = {'values': 1}: expected"),
@@ -86,8 +86,8 @@ def test_options_name_the_view_of_a_file_that_names_none() -> None:
 
 def test_with_is_the_edited_file() -> None:
     case = Case.loads('units = "us"\nUX = 30\nDA = "5 ft"\nUX_source = "EDR"')
-    edited = Case.of({"units": "us", "UX": "30 +- 2", "DA": "5 ft"})
-    assert case.with_(UX="+- 2").entries == edited.entries
+    changed = Case.of({"units": "us", "UX": "30 +- 2", "DA": "5 ft"})
+    assert case.with_(UX="+- 2").entries == changed.entries
     assert case.with_(UX="+- 2").entries["UX"].high == pytest.approx(32 * 22 / 15)
     in_feet = Case.of({"units": "chapter", "UX": 44}).with_(UX="+- 2 mph")
     assert in_feet.entries["UX"].low == pytest.approx(44 - 2 * 22 / 15)
@@ -136,9 +136,9 @@ def test_course_and_contact_point() -> None:
     assert case.texts["TA"] == "-135"
     assert math.isnan(case.entries["TB"].value)
     assert "TB" not in case.texts
-    ranged = Case.of({"UX": "3 +- 1", "UY": 3, "TA": "course"})
-    assert math.isnan(ranged.entries["TA"].value)
-    assert ranged.texts["TA"] == "-135"
+    uncertain = Case.of({"UX": "3 +- 1", "UY": 3, "TA": "course"})
+    assert math.isnan(uncertain.entries["TA"].value)
+    assert uncertain.texts["TA"] == "-135"
     polar = Case.of({"CAF": 3, "CAL": -4})
     assert (polar.texts["DA"], polar.texts["PA"]) == ("5", "-53.13010235415598")
     assert Case.of({"CAF": "3 +- 1", "CAL": 4}).entries["CAF"].low == 2
@@ -159,8 +159,8 @@ def test_point_masses_along_one_line_need_no_plane() -> None:
     assert courses.with_(SA="5", SAF="", HAF="").texts["GA"] == "0"
     assert courses.with_(SA="0").texts["GA"] == "0"
     assert "MU is not used" in case.with_(MU="0.5").remarks[1]
-    locked = case.with_(MU="Locked")
-    assert (locked.texts["MU"], locked.texts["GA"]) == ("-10", "0")
+    pivot = case.with_(MU="Locked")
+    assert (pivot.texts["MU"], pivot.texts["GA"]) == ("-10", "0")
     for changes in ({"M": "6"}, {"UY": "1"}, {"UY": "0 +- 1"}, {"GA": "5"}, {"PDOFA": "5"}):
         assert not any("along one line" in remark for remark in case.with_(changes).remarks)
 

@@ -17,8 +17,8 @@ def test_entries_are_exact_and_shown_as_written(seed: int) -> None:
     for name, numbers in exact.items():
         amount = case.entries[name]
         read = amount.value, amount.low, amount.high, amount.sd
-        for is_, wanted in zip(read, numbers, strict=True):
-            assert math.isclose(is_, wanted, rel_tol=1e-12, abs_tol=1e-300), (name, text)
+        for is_, exact_number in zip(read, numbers, strict=True):
+            assert math.isclose(is_, exact_number, rel_tol=1e-12, abs_tol=1e-300), (name, text)
 
         base, view = float(numbers[0]), case.view
         factor, offset = view.map(name)
@@ -27,8 +27,8 @@ def test_entries_are_exact_and_shown_as_written(seed: int) -> None:
         largest = max(abs(base), abs(offset)) if offset else 0
         error = math.remainder(float(Fraction(view.shown(name, base)) - shown), turn)
         assert abs(error) <= 2 * math.ulp(float(max(abs(shown), largest)))
-        again = Case.of({**view.words(), name: view.shown_text(name, base)}).entries[name].value
-        assert abs(math.remainder(again - base, turn)) <= 2 * math.ulp(
+        value = Case.of({**view.words(), name: view.shown_text(name, base)}).entries[name].value
+        assert abs(math.remainder(value - base, turn)) <= 2 * math.ulp(
             float(max(abs(base), largest))
         )
         array = view.shown(name, np.array([base, base]))

@@ -16,7 +16,7 @@ PIECES += [b"1e999999999", b"1e-999999999", b"nan", b"inf", b"..", b"+-", b"\xff
 SCENE = 'units = "us"\nMA = {value = "2,000 lb", source = "x"}\nIA = "estimate"\nDA = "6 ft 6 in"\n'
 
 
-def damaged(data: bytes, rng: random.Random) -> bytes:
+def damage(data: bytes, rng: random.Random) -> bytes:
     for _ in range(rng.choice((1, 2, 5))):
         at, to = sorted(rng.randrange(len(data) + 1) for _ in range(2))
         piece = rng.choice((rng.choice(PIECES), data[at:to], rng.randbytes(1)))
@@ -37,7 +37,7 @@ def test_damaged_files(tmp_path: Path, kind: str) -> None:
         solve_table(str(table), str(path), ["VAX"])
     data = path.read_bytes()
     for _ in range(10):
-        path.write_bytes(damaged(data, rng))
+        path.write_bytes(damage(data, rng))
         start, message = time.process_time(), path.name
         try:
             if kind == "toml":

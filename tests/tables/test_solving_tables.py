@@ -27,7 +27,7 @@ def table(columns: dict[str, list[object]], **options: bool) -> Table:
     return Table(list(columns), iter([Block(columns, range(1, count + 1))]), **options)
 
 
-def solved(columns: dict[str, list[object]], results: str, **options: object):
+def solve_columns(columns: dict[str, list[object]], results: str, **options: object):
     """Return results by heading, and bad rows."""
     solver = Solver(table(columns), results.split(), **options)
     out = solver.solve(Block(columns, range(1, 1 + len(next(iter(columns.values()))))))
@@ -43,10 +43,10 @@ def test_cells_with_units() -> None:
     del columns["UX"]
     columns = {"UX [ft/s]": ["-29.04", "-19.8 mph", "-8.851392 m/s"], **columns}
     columns = {f"{n} [{u}]" if u else n: c for n, c in columns.items() for u in [_units(n)]}
-    out, bad, _ = solved(columns, "VAX", view=View("chapter"))
+    out, bad, _ = solve_columns(columns, "VAX", view=View("chapter"))
     assert not bad
-    expected = solve(NUMBERS, "VAX")["VAX"]
-    assert out["VAX [ft/s]"] == pytest.approx([expected] * 3, rel=1e-13)
+    reference = solve(NUMBERS, "VAX")["VAX"]
+    assert out["VAX [ft/s]"] == pytest.approx([reference] * 3, rel=1e-13)
 
 
 def _units(name: str) -> str:
@@ -56,19 +56,19 @@ def _units(name: str) -> str:
 
 def test_headings_name_the_system() -> None:
     columns = {f"{n.lower()} ({_units(n)})" if _units(n) else n: c for n, c in scene().items()}
-    out, _, solver = solved(columns, "VAX KI")
+    out, _, solver = solve_columns(columns, "VAX KI")
     assert solver.view.units == "us"
     assert list(out)[-2:] == ["VAX [mph]", "KI [ft-lb]"]
-    mixed = {"UX [mph]" if n == "UX" else n: c for n, c in scene().items()}
+    both_kinds = {"UX [mph]" if n == "UX" else n: c for n, c in scene().items()}
     with pytest.raises(UserError, match=r"expected DA \[ft\], or --units us"):
-        solved(mixed, "VAX")
+        solve_columns(both_kinds, "VAX")
     with pytest.raises(UserError, match=r"^table: units of two systems"):
-        solved({"UX [mph]": ["1"], "UY [km/h]": ["1"]}, "VAX")
+        solve_columns({"UX [mph]": ["1"], "UY [km/h]": ["1"]}, "VAX")
     with pytest.raises(UserError, match=r"^table: UX and ux are two columns of UX"):
-        solved({**scene(), "ux": ["1"]}, "VAX")
-    (bad,) = solved(scene(UX=["25 mph"]), "VAX")[1]
+        solve_columns({**scene(), "ux": ["1"]}, "VAX")
+    (bad,) = solve_columns(scene(UX=["25 mph"]), "VAX")[1]
     assert bad.startswith("table, row 1: DA = 7.59 has no unit, and other values have; add one, or")
-    (bad,) = solved({n: [f"{c[0]} {_units(n)}"] for n, c in scene().items()}, "VAX")[1]
+    (bad,) = solve_columns({n: [f"{c[0]} {_units(n)}"] for n, c in scene().items()}, "VAX")[1]
     assert bad == "table, row 1: has units; expected them in the headings, or --units"
 
 
@@ -92,7 +92,7 @@ def test_bad_rows_do_not_stop_the_others(
 ) -> None:
     columns = scene(3)
     columns[name] = [SAMPLE[name], cell, SAMPLE[name]]
-    out, bad, _ = solved(columns, "VAX STATUS" if arithmetic == "float64" else "VAX")
+    out, bad, _ = solve_columns(columns, "VAX STATUS" if arithmetic == "float64" else "VAX")
     good = solve(NUMBERS, "VAX")["VAX"]
     assert len(bad) == 1
     assert bad[0].startswith(f"table, row 2: {name} ")
@@ -120,7 +120,7 @@ def test_scenes_that_are_no_impact_are_bad_rows(
     changes: dict[str, str], column: str, reason: str
 ) -> None:
     columns: dict[str, list[object]] = {n: [t, changes.get(n, t)] for n, t in SAMPLE.items()}
-    out, bad, _ = solved(columns, "VAX KI")
+    out, bad, _ = solve_columns(columns, "VAX KI")
     assert bad == [f"table, row 2: {column} {reason}"]
     assert np.isnan(out["KI"]).tolist() == [False, True]
 
@@ -128,53 +128,53 @@ def test_scenes_that_are_no_impact_are_bad_rows(
 def test_what_cannot_be_typed_is_a_bad_row() -> None:
     for name, cell, fault in (("UX", "0." + "1" * 80, "longer"), ("MA", "inf", "be typed")):
         columns = {**scene(1), name: [cell]}
-        assert fault in solved(columns, "KI", arithmetic="applesoft")[1][0]
+        assert fault in solve_columns(columns, "KI", arithmetic="applesoft")[1][0]
     points = {**scene(1, MA=["inf"], UX=["0"]), "M": ["4"]}
-    assert "cannot be typed" in solved(points, "KI", arithmetic="applesoft")[1][0]
+    assert "cannot be typed" in solve_columns(points, "KI", arithmetic="applesoft")[1][0]
     for name, arithmetic in product(("EM", "E", "WA"), ("float64", "applesoft")):
-        mixed = scene(2, M=["4", "6"])
-        del mixed[name]  # a row of 6 equations needs it
-        bad = solved(mixed, "KI XAF", arithmetic=arithmetic)[1]
+        both_kinds = scene(2, M=["4", "6"])
+        del both_kinds[name]  # a row of 6 equations needs it
+        bad = solve_columns(both_kinds, "KI XAF", arithmetic=arithmetic)[1]
         assert bad == [f"table, row 2: {name} is empty; expected a number"]
 
 
 def test_applesoft_has_the_bits_of_replay_and_reports_errors() -> None:
     columns = scene(4, MU=[".911", "1E38", "x", ".5"], UX=["-29.04", "1E30", "1", "-29.040"])
-    out, bad, _ = solved(columns, "VAX KI", arithmetic="applesoft")
+    out, bad, _ = solve_columns(columns, "VAX KI", arithmetic="applesoft")
     for at in (0, 3):
-        expected = impact88.replay({n: str(c[at]) for n, c in columns.items()})
-        assert out["KI"][at] == expected.floats("KI")[0]
+        reference = impact88.replay({n: str(c[at]) for n, c in columns.items()})
+        assert out["KI"][at] == reference.floats("KI")[0]
     assert out["ERROR"][1] == "?OVERFLOW ERROR IN 320"
     assert out["LINE"][1] > 0
     assert (out["ERROR"][2], out["LINE"][2]) == ("", 0)
     assert [text[:14] for text in bad] == ["table, row 3: "]
     with pytest.raises(UserError, match="'COND' is not a result of --arithmetic applesoft"):
-        solved(columns, "COND", arithmetic="applesoft")
+        solve_columns(columns, "COND", arithmetic="applesoft")
 
 
 def test_applesoft_types_converted_digits_exactly() -> None:
     case = Case.of({**SAMPLE, "units": "chapter"}).with_(UX="-19.8 mph", MA="4617 lb")
     columns = {n: [t] for n, t in SAMPLE.items()} | {"UX": ["-19.8 mph"], "MA": ["4617 lb"]}
-    out, bad, _ = solved(columns, "VAX KI", arithmetic="applesoft", view=View("chapter"))
+    out, bad, _ = solve_columns(columns, "VAX KI", arithmetic="applesoft", view=View("chapter"))
     assert not bad
-    expected = impact88.replay(dict(case.texts))
-    assert out["KI [ft-lb]"][0] == expected.floats("KI")[0]
+    reference = impact88.replay(dict(case.texts))
+    assert out["KI [ft-lb]"][0] == reference.floats("KI")[0]
 
 
 def test_constants_fill_and_replace_columns() -> None:
     columns = scene(2)
     del columns["MU"], columns["M"]
     with pytest.raises(UserError, match="no column MU; --set NAME=VALUE gives one for all rows"):
-        solved(columns, "VAX")
-    out, _, _ = solved(columns, "VAX", case=Case.of({"MU": ".911"}))
+        solve_columns(columns, "VAX")
+    out, _, _ = solve_columns(columns, "VAX", case=Case.of({"MU": ".911"}))
     assert out["VAX"].tolist() == [solve(NUMBERS, "VAX")["VAX"]] * 2
-    out, _, _ = solved(scene(2), "VAX", case=Case.of({"MU": "-10"}), replaced=["MU"])
+    out, _, _ = solve_columns(scene(2), "VAX", case=Case.of({"MU": "-10"}), replaced=["MU"])
     assert out["VAX"].tolist() == [solve({**NUMBERS, "MU": -10}, "VAX")["VAX"]] * 2
     assert out["MU"].tolist() == [-10, -10]
-    assert not solved(scene(2), "VAX", case=Case.of({"MU": ""}), replaced=["MU"])[1]
+    assert not solve_columns(scene(2), "VAX", case=Case.of({"MU": ""}), replaced=["MU"])[1]
     units = {f"{n} [{_units(n)}]" if _units(n) else n: c for n, c in columns.items() if n != "UX"}
     with pytest.raises(UserError, match="UX = 3 has no unit, and other values have"):
-        solved(units, "VAX", case=Case.loads("UX = 3\nMU = 0.5"))
+        solve_columns(units, "VAX", case=Case.loads("UX = 3\nMU = 0.5"))
 
 
 def test_estimates_courses_and_shares_are_those_of_each_row() -> None:
@@ -182,58 +182,63 @@ def test_estimates_courses_and_shares_are_those_of_each_row() -> None:
     for name in ("IA", "TA", "MU"):
         del columns[name]
     case = Case.of({"units": "us", "IA": "estimate", "MA": "3000", "TA": "course", "MU": "85 %"})
-    out, bad, _ = solved(columns, "VAX MUP MUC", case=case)
+    out, bad, _ = solve_columns(columns, "VAX MUP MUC", case=case)
     assert [text[:17] for text in bad] == ["table, row 3: IA "]
     for at in (0, 1):
-        one = Case.of({**{n: c[at] for n, c in columns.items()}, "units": "us"})
-        one = one.with_(IA="estimate", TA="course", MU="85 %")
-        expected = solve(one.numbers, "VAX")["VAX"]
-        assert out["VAX [mph]"][at] == pytest.approx(one.view.shown("VAX", expected), rel=1e-12)
+        row_case = Case.of({**{n: c[at] for n, c in columns.items()}, "units": "us"})
+        row_case = row_case.with_(IA="estimate", TA="course", MU="85 %")
+        reference = solve(row_case.numbers, "VAX")["VAX"]
+        assert out["VAX [mph]"][at] == pytest.approx(
+            row_case.view.shown("VAX", reference), rel=1e-12
+        )
 
 
 def test_shares_in_cells_are_written_as_numbers() -> None:
-    out, _, _ = solved(scene(2, MU=["50 %", ".5"]), "MUP MUC", as_text=False)
+    out, _, _ = solve_columns(scene(2, MU=["50 %", ".5"]), "MUP MUC", as_text=False)
     assert out["MU"].tolist() == [0.5 * abs(out["MUC"][0]), 0.5]
 
 
 def test_point_masses_leave_out_what_needs_the_plane() -> None:
     columns = {n: [SAMPLE[n]] for n in ("MA", "MB", "UX", "UY", "VX", "VY")} | {"M": ["4"]}
-    out, bad, solver = solved(columns, "KI PN")
+    out, bad, solver = solve_columns(columns, "KI PN")
     assert list(out)[-1] == "KI"
     assert solver.remarks() == ["PN needs E MU GA"]
-    mixed = scene(2, M=["4", ""], DA=["", "7.59"])
+    both_kinds = scene(2, M=["4", ""], DA=["", "7.59"])
     for arithmetic in ("float64", "applesoft"):
-        out, bad, _ = solved(mixed, "VAX", arithmetic=arithmetic)
+        out, bad, _ = solve_columns(both_kinds, "VAX", arithmetic=arithmetic)
         assert not bad
         assert not np.isnan(out["VAX"]).any()
 
 
 def test_remarks_count_rows() -> None:
     columns = scene(5, EM=["0", "1", "0", "0", "1"])
-    _, _, solver = solved(columns, "VAX")
+    _, _, solver = solve_columns(columns, "VAX")
     assert any(text.startswith("row 1 and 2 more: EM = 0: the moment") for text in solver.remarks())
     heavy = scene(2, MA=["1e6", "100"])
-    _, _, solver = solved(heavy, "VAX", view=View("chapter"))
+    _, _, solver = solve_columns(heavy, "VAX", view=View("chapter"))
     assert any("row 1: MA = 1e6: no vehicle has that mass" in text for text in solver.remarks())
-    _, _, solver = solved(heavy, "VAX")
+    _, _, solver = solve_columns(heavy, "VAX")
     assert not any("MA" in text for text in solver.remarks())
+    turned = scene(2, TB=["170", "170"], VX=["14.52", "0"], VY=["25.15", "0"])
+    _, _, solver = solve_columns(turned, "VAX")
+    assert [text[:28] for text in solver.remarks()] == ["row 1: TB = 170: B moves mor"]
 
 
 def test_views_turn_columns() -> None:
     view = View("chapter", "sae", "compass")
     shown = {n: [view.shown_text(n, NUMBERS[n])] for n in SCENE}
-    out, _, _ = solved(shown, "VAX VAY WAF", view=view)
-    expected = solve(NUMBERS, ["VAX", "VAY", "WAF"])
-    assert out["VAY [ft/s]"][0] == pytest.approx(-expected["VAY"], rel=1e-12)
-    assert out["VAX [ft/s]"][0] == pytest.approx(expected["VAX"], rel=1e-12)
+    out, _, _ = solve_columns(shown, "VAX VAY WAF", view=view)
+    reference = solve(NUMBERS, ["VAX", "VAY", "WAF"])
+    assert out["VAY [ft/s]"][0] == pytest.approx(-reference["VAY"], rel=1e-12)
+    assert out["VAX [ft/s]"][0] == pytest.approx(reference["VAX"], rel=1e-12)
 
 
 def test_sweeps(tmp_path: Path) -> None:
     case = Case.of({**SAMPLE, "units": "chapter"})
     target = tmp_path / "out.csv"
     swept = sweep_table(case, {"MU": "0:1:3", "UX": "-20 mph:-10 mph:2"})
-    done = []
-    solve_table(swept, str(target), ["VAX"], case=case, progress=lambda *x: done.append(x))
+    calls = []
+    solve_table(swept, str(target), ["VAX"], case=case, progress=lambda *x: calls.append(x))
     with target.open() as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == ["MU", "UX [ft/s]", "VAX [ft/s]"]
@@ -241,9 +246,9 @@ def test_sweeps(tmp_path: Path) -> None:
         ("0", "-29.333333333333332"),
         ("0", "-14.666666666666666"),
     ]
-    expected = solve({**NUMBERS, "MU": 0.5, "UX": -22 * 2 / 3}, "VAX")["VAX"]
-    assert float(rows[3]["VAX [ft/s]"]) == pytest.approx(expected, rel=1e-13)
-    assert done == [(6, None)]
+    reference = solve({**NUMBERS, "MU": 0.5, "UX": -22 * 2 / 3}, "VAX")["VAX"]
+    assert float(rows[3]["VAX [ft/s]"]) == pytest.approx(reference, rel=1e-13)
+    assert calls == [(6, None)]
     solve_table(sweep_table(case), str(target), ["VAX"], case=case)
     with target.open() as file:
         (row,) = csv.DictReader(file)

@@ -81,17 +81,13 @@ class Amount:
     share: bool = False
 
     def __post_init__(self) -> None:
-        if self.kind not in ("exact", "uniform", "triangular", "normal"):
+        is_known = self.kind in ("exact", "uniform", "triangular", "normal")
+        is_ordered = math.isnan(self.value) or self.low <= self.value <= self.high
+        if not (is_known and is_ordered and self.sd >= 0):
             raise UserError(
-                f"kind is {quoted(self.kind)}; expected exact, uniform, triangular or normal"
+                f"{self} is none; expected low <= value <= high, sd of 0 or more, and of kinds "
+                "exact, uniform, triangular, normal"
             )
-        if self.low > self.high or not (math.isnan(self.value) or self.low <= self.value):
-            raise UserError(
-                f"limits {self.low:g} and {self.high:g} around {self.value:g}; "
-                "expected low <= value <= high"
-            )
-        if not self.sd >= 0:
-            raise UserError(f"the standard deviation is {self.sd:g}; expected 0 or more")
 
     @classmethod
     def exactly(cls, value: float, text: str = "") -> Amount:

@@ -169,47 +169,49 @@ class Case:
             For an unknown name, a text that is not an amount, units of two systems, a bare number
             among units, and entries that contradict one another.
         """
-        written = {n: text for n, value in entries.items() if (text := _text(n, value))}
+        entered = {n: text for n, value in entries.items() if (text := _text(n, value))}
         places = places or {}
-        given = {n: t for n, t in written.items() if n not in ABOUT and not n.endswith(SOURCE)}
-        sources = {n.removesuffix(SOURCE): t for n, t in written.items() if n.endswith(SOURCE)}
-        for name in (*given, *sources):
+        quantities = {n: t for n, t in entered.items() if n not in ABOUT and not n.endswith(SOURCE)}
+        sources = {n.removesuffix(SOURCE): t for n, t in entered.items() if n.endswith(SOURCE)}
+        for name in (*quantities, *sources):
             if name not in INPUTS:
                 fault = f"{quoted(name)} is not an entry of a scene"
                 hint = did_you_mean(name, (*INPUTS, *ABOUT))
                 raise UserError(fault + hint, places.get(name, source))
-        words = {n: t for n, t in written.items() if n in ("units", "axes", "headings")}
-        shown = View.of(source, **{**view.words(), **words})
+        words = {n: t for n, t in entered.items() if n in ("units", "axes", "headings")}
+        file_view = View.of(source, **{**view.words(), **words})
         try:
-            if not shown.units:
-                units = system_using([u for n, text in given.items() for u in units_in(n, text)])
-                shown, is_inferred = replace(shown, units=units), bool(units)
-            amounts, remarks = _read_entries(given, shown, is_inferred, places)
+            if not file_view.units:
+                units = system_using(
+                    [u for n, text in quantities.items() for u in units_in(n, text)]
+                )
+                file_view, is_inferred = replace(file_view, units=units), bool(units)
+            amounts, remarks = _read_entries(quantities, file_view, is_inferred, places)
             sizes = {n: amounts.pop(n) for pair in SIZES.values() for n in pair if n in amounts}
             amounts, across = plane_across(amounts)
-            texts, share = _typed(amounts)
+            texts, share = _nominal_digits(amounts)
         except UserError as error:
             raise error if error.where else UserError(str(error), source) from None
-        derived = {n for n, t in given.items() if t == COURSE or _is_estimate(n, t)}
-        derived |= {n for n, amount in amounts.items() if amount.share}
-        derived |= {"GA", "MU"} if across else set()
+        dependent = {n for n, t in quantities.items() if t == COURSE or _is_estimate(n, t)}
+        dependent |= {n for n, amount in amounts.items() if amount.share}
+        dependent |= {"GA", "MU"} if across else set()
         absent = [name for name in SCENE if name not in texts]
         is_complete = amounts["M"].value == 4 and {*absent} <= {*POINT_DEFAULTS}
-        omitted = absent if is_complete else []
-        texts |= {name: POINT_DEFAULTS[name] for name in omitted}
-        remarks += [*across, *share, *_implausible(amounts, sizes, given, shown)]
-        about = {name: written.get(name, "") for name in ("title", "case", "examiner", "date")}
+        defaults = absent if is_complete else []
+        texts |= {name: POINT_DEFAULTS[name] for name in defaults}
+        remarks += [*across, *share, *_implausible(amounts, sizes, quantities, file_view)]
+        about = {name: entered.get(name, "") for name in ("title", "case", "examiner", "date")}
         return cls(
             amounts,
-            shown,
+            file_view,
             {name: texts[name] for name in SCENE if name in texts},
             tuple(remarks),
-            written=written,
+            written=entered,
             source=source,
             sources=sources,
             sizes=sizes,
-            derived=tuple(derived),
-            omitted=tuple(omitted),
+            derived=tuple(dependent),
+            omitted=tuple(defaults),
             places=places,
             defaults=view,
             **about,
@@ -343,12 +345,12 @@ def _read_entry(name: str, text: str, view: View) -> Amount:
     return read(name, text, view)
 
 
-def _typed(entries: Mapping[str, Amount]) -> tuple[dict[str, str], list[str]]:
+def _nominal_digits(entries: Mapping[str, Amount]) -> tuple[dict[str, str], list[str]]:
     """Return the digits of nominal values for the 1988 program, and a remark on a share of the
     critical friction. Raises UserError."""
     nominal = contact_point({n: replace(a, kind="exact") for n, a in entries.items()})
-    known = headings(nominal)
-    amounts = {n: known.get(n, a) if a.text == COURSE else a for n, a in nominal.items()}
+    facing = headings(nominal)
+    amounts = {n: facing.get(n, a) if a.text == COURSE else a for n, a in nominal.items()}
     texts = {n: a.typed for n, a in amounts.items() if not (a.share or math.isnan(a.value))}
     if "MU" not in amounts or not amounts["MU"].share:
         return texts, []
@@ -374,8 +376,8 @@ def _implausible(
     pairs = {v: [sizes[n].value for n in pair if n in sizes] for v, pair in SIZES.items()}
     return [
         f"{name} = {given[name]}: {words}" if name in given else words
-        for name, where, words in implausible(values, view, courses(entries), pairs)
-        if where
+        for name, is_off, words in implausible(values, view, courses(entries), pairs)
+        if is_off
     ]
 
 

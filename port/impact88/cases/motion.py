@@ -54,9 +54,9 @@ def contact_point(entries: Mapping[str, Amount]) -> dict[str, Amount]:
                 f"P{vehicle} in their place"
             )
         if present and not any(entries[name].varies for name in names):
-            forward, left = (result.pop(name).value for name in names)
-            result[f"D{vehicle}"] = exact_number(math.hypot(forward, left))
-            result[f"P{vehicle}"] = exact_number(math.degrees(math.atan2(left, forward)))
+            forward, side = (result.pop(name).value for name in names)
+            result[f"D{vehicle}"] = exact_number(math.hypot(forward, side))
+            result[f"P{vehicle}"] = exact_number(math.degrees(math.atan2(side, forward)))
     return result
 
 
@@ -95,20 +95,20 @@ def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
         Degrees, from -180 to 180; A approaches against the normal. None for another motion.
     """
     vectors = {speed: velocity(entries, speed) for speed in VECTORS}
-    known = {speed: vector for speed, vector in vectors.items() if vector is not None}
-    uncertain = [n for s in VECTORS if s not in known for n in VECTORS[s] if n in entries]
-    moving = [vector for vector in known.values() if vector]
-    is_known = any({*speeds.split()} <= {*known} for speeds in _ENOUGH)
+    velocities = {speed: vector for speed, vector in vectors.items() if vector is not None}
+    uncertain = [n for s in VECTORS if s not in velocities for n in VECTORS[s] if n in entries]
+    moving = [vector for vector in velocities.values() if vector]
+    is_known = any({*speeds.split()} <= {*velocities} for speeds in _ENOUGH)
     if not (is_known and moving) or any(n in entries for n in (*uncertain, *_ACROSS)):
         return None
     if any(abs((moving[0].conjugate() * v).imag) > PARALLEL * abs(v * moving[0]) for v in moving):
         return None
-    # A is taken to be the faster one where not both speeds before are known
+    # A is taken to be the faster one where not both speeds before are velocities
     has_speeds = all(name in entries or VECTORS[name][0] in entries for name in ("SA", "SB"))
-    approach = known.get("SA", 0j) - known.get("SB", 0j) if has_speeds else 0j
+    approach = velocities.get("SA", 0j) - velocities.get("SB", 0j) if has_speeds else 0j
     if not approach:
-        speed = next(name for name, vector in known.items() if vector)
-        approach = known[speed] if speed[1] == "A" else -known[speed]
+        speed = next(name for name, vector in velocities.items() if vector)
+        approach = velocities[speed] if speed[1] == "A" else -velocities[speed]
     return math.degrees(math.atan2(-approach.imag + 0.0, -approach.real + 0.0))
 
 

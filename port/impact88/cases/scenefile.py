@@ -7,7 +7,6 @@ from __future__ import annotations
 import datetime
 import re
 import tomllib
-from collections import Counter
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -47,20 +46,18 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
         For text that is not TOML and for values that are neither numbers nor texts.
     """
     lines = text.split("\n")
-    for number, line in enumerate(lines, 1):
-        if len(line) > MAX_LINE:
-            place = f"{source}, line {number}"
-            raise UserError(f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE", place)
-    matches = {number: _KEY.match(line) for number, line in enumerate(lines, 1)}
-    keys = Counter(match[1] for match in matches.values() if match)
+    longest = max(range(len(lines)), key=lambda at: len(lines[at]))
+    if len(lines[longest]) > MAX_LINE:
+        place = f"{source}, line {longest + 1}"
+        raise UserError(f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE", place)
     try:
         values = tomllib.loads(text, parse_float=str)
     except tomllib.TOMLDecodeError as error:
         advice = "expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
-        twice = [f", and {name} once" for name, count in keys.items() if count > 1]
-        raise UserError(f"is not TOML: {error}; {advice}{''.join(twice)}", source) from None
+        raise UserError(f"is not TOML: {error}; {advice}", source) from None
     except (RecursionError, ValueError):  # nested deeply; a whole number of 4,300 digits
         raise UserError("is not a scene; expected one NAME = VALUE a line", source) from None
+    matches = {number: _KEY.match(line) for number, line in enumerate(lines, 1)}
     places = {match[1]: number for number, match in matches.items() if match}
     for name, value in values.items():
         is_date = name in ABOUT and isinstance(value, datetime.date)

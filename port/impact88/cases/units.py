@@ -274,10 +274,10 @@ class View:
         factor, offset = self.map(name)
         if factor == 1 and not offset:
             return value
-        scaled = (value - float(offset)) * float(1 / factor) + 0.0  # no -0
+        result = (value - float(offset)) * float(1 / factor) + 0.0  # no -0
         if name == "MUP":  # the pivot's mark keeps its sign
-            scaled = scaled + 2 * PIVOT * (value == PIVOT)
-        return scaled % 360.0 if self._turns(name) else scaled
+            result = result + 2 * PIVOT * (value == PIVOT)
+        return result % 360.0 if self._turns(name) else result
 
     def shown_text(self, name: str, value: float) -> str:
         """Return a single number as `shown`, as decimal text."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
@@ -79,12 +78,12 @@ def read_excel(path: str) -> Table:
     counts = [sum(bool(heading_name(cell)[0]) for cell in row) for row in rows]
     if not any(counts):
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
-    skipped = counts.index(max(counts)) + 1
-    headings = rows[skipped - 1]
+    count = counts.index(max(counts)) + 1
+    headings = rows[count - 1]
     while not headings[-1].strip():
         headings.pop()
     names = check_headings(headings, path)
-    options = {"skip_rows": skipped, "use_columns": [*range(len(names))], "column_names": names}
+    options = {"skip_rows": count, "use_columns": [*range(len(names))], "column_names": names}
     numbers = load("float", dtype_coercion="coerce", **options)
     texts = load("string", dtype_coercion="coerce", **options)
 
@@ -92,7 +91,7 @@ def read_excel(path: str) -> Table:
         for start in range(0, texts.height, BLOCK_ROWS):
             parts = numbers.slice(start, BLOCK_ROWS), texts.slice(start, BLOCK_ROWS)
             columns = {name: _merge_cells(parts[0][name], parts[1][name]) for name in names}
-            first = skipped + 1 + start
+            first = count + 1 + start
             yield Block(columns, range(first, first + parts[1].height))
 
     return Table(names, blocks(), path)
@@ -116,18 +115,6 @@ def frame_of(columns: Mapping[str, Column]) -> Any:
         cells = column if is_float or is_series else [None if x == "" else x for x in column]
         series.append(polars().Series(name, cells, strict=False, nan_to_null=is_float))
     return polars().DataFrame(series)
-
-
-def frame_of_texts(columns: Mapping[str, Column]) -> Any:
-    """Return columns as a frame whose numbers are written in the digits of Python's floats."""
-    frame = frame_of(columns)
-    for name, dtype in frame.schema.items():
-        size = np.abs(columns[name]) if dtype.is_float() else np.zeros(1)
-        # polars writes these in another notation
-        if np.any((size >= 1e16) | ((size < 1e-4) & (size > 0))):
-            texts = [None if math.isnan(x) else repr(x) for x in columns[name].tolist()]
-            frame = frame.with_columns(polars().Series(name, texts))
-    return frame
 
 
 def write_parquet(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,7 +19,7 @@ from ..cases.case import POINT_DEFAULTS, Case
 from ..cases.estimates import SIZES
 from ..cases.plausibility import implausible, impossible
 from ..cases.units import DIMENSIONS, PLAIN, View, system_using, unit_of
-from ..decimals import is_number, to_double, to_doubles, to_text
+from ..decimals import is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..mechanics.solve import evaluate, solve
 from ..names import RESULTS, SCENE, check_names, quantity
@@ -213,8 +212,8 @@ class Solver:
         """Return the remarks on all rows so far."""
         lines = [f"{name} needs {' '.join(names)}" for name, names in self.left_out.items()]
         for row, count, text in self._counts.values():
-            more = f" and {count - 1:,} more" if count > 1 else ""
-            lines.append(f"{self.table.counts} {row:,}{more}: {text}")
+            tail = f" and {count - 1:,} more" if count > 1 else ""
+            lines.append(f"{self.table.counts} {row:,}{tail}: {text}")
         return lines
 
     def solve(self, block: Block) -> dict[str, Column]:
@@ -242,14 +241,15 @@ class Solver:
     def _remark(self, rows: _Rows) -> None:
         """Count the rows that each plausibility remark applies to."""
         values = rows.values
-        courses = {
-            "A": np.degrees(np.arctan2(values["UY"], values["UX"])),
-            "B": np.degrees(np.arctan2(values["VY"], values["VX"])),
-        }
+        courses = {}
+        for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
+            rests = (values[x] == 0) & (values[y] == 0)
+            angle = np.degrees(np.arctan2(values[y], values[x]))
+            courses[vehicle] = np.where(rests, math.nan, angle)
         amounts = self.case.sizes
         sizes = {v: [amounts[n].value for n in pair if n in amounts] for v, pair in SIZES.items()}
-        for name, where, words in implausible(values, self.view, courses, sizes):
-            places = np.flatnonzero(np.broadcast_to(where, rows.count))
+        for name, mask, words in implausible(values, self.view, courses, sizes):
+            places = np.flatnonzero(np.broadcast_to(mask, rows.count))
             if places.size and name in self.columns:
                 cell = rows.block.columns[self.columns[name][0]][int(places[0])]
                 first = rows.block.rows[places[0]], 0, f"{name} = {cell}: {words}"
@@ -321,8 +321,8 @@ class _Rows:
     def solve(self) -> dict[str, NDArray[Any]]:
         """Return the results in double precision."""
         values = self.values
-        for name, where, words in impossible(values):
-            for at in np.flatnonzero(np.broadcast_to(where, self.count)).tolist():
+        for name, mask, words in impossible(values):
+            for at in np.flatnonzero(np.broadcast_to(mask, self.count)).tolist():
                 reason = f"{self.place(at)}: {name} = {to_text(float(values[name][at]))} {words}"
                 self.bad.setdefault(at, reason)
         solution = solve(values, self.solver.results)
@@ -371,8 +371,8 @@ class _Rows:
             return self.block.columns.get(heading, [None] * self.count)
         column = np.array(self.shown[name])
         factor, offset = (float(x) for x in solver.view.map(name, solver.columns[name][1]))
-        others = [*self.cases]
-        column[others] = (self.values[name][others] - offset) / factor
+        rows = [*self.cases]
+        column[rows] = (self.values[name][rows] - offset) / factor
         return column
 
 
@@ -393,9 +393,6 @@ def plain_numbers(column: Column) -> Floats:
         import polars
 
         return np.array(column.cast(polars.Float64, strict=False).to_numpy(), np.float64)
-    with suppress(TypeError, ValueError):  # some cell is no plain number
-        if " " not in "".join(column):
-            return np.array(to_doubles(column))
     return np.array([_double(cell) for cell in column], np.float64)
 
 

@@ -1,7 +1,7 @@
 """Tables as text: CSV and JSON Lines, read a block of rows at a time, and written.
 
 polars (extra ``tables``) splits plain CSV; the csv module takes every file, names the line of a row
-that is not as wide as the headings, and gives the same texts.
+that is not as wide as the headings, and gives the same numbers.
 """
 
 from __future__ import annotations
@@ -245,10 +245,10 @@ def write_csv(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
     is_first = True
     for columns in blocks:
         if find_spec("polars"):
-            from .polarsformats import frame_of_texts
+            from .polarsformats import frame_of
 
             data = io.BytesIO()  # polars hides which error of the file it met
-            frame_of_texts(columns).write_csv(data, include_header=is_first)
+            frame_of(columns).write_csv(data, include_header=is_first)
             file.write(data.getbuffer())
         else:
             text = io.StringIO(newline="")
