@@ -44,8 +44,8 @@ def test_a_changed_bit_is_seen():
     case = CASES[0]
     result = run(case["scene"], dos=False)
     name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
-    changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
-    assert memory_contents(result.reals, result.A) != memory_contents(changed, case["A"])
+    alteration = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
+    assert memory_contents(result.reals, result.A) != memory_contents(alteration, case["A"])
 
 
 @pytest.mark.parametrize(
@@ -103,20 +103,20 @@ def test_without_an_effect_on_other_runs():
 
 
 def test_stopping_after_every_line():
-    seen = []
-    result = run(sample(1), after_line=lambda line, left: seen.append((line, left)))
-    lines = [line for line, _ in seen]
+    stops = []
+    result = run(sample(1), after_line=lambda line, left: stops.append((line, left)))
+    lines = [line for line, _ in stops]
     assert lines[:4] == [190, 200, 210, 220]
     assert lines[-1] == 780
     assert {400, 410, 570, 1010, 1040, 1150, 760} <= set(lines)
     assert not {430, 440, 520, 1160, 1170} & set(lines)
     assert lines.count(570) == 1
     assert lines.count(1030) == 30
-    after_280 = seen[lines.index(280)][1]
+    after_280 = stops[lines.index(280)][1]
     assert arithmetics.APPLESOFT.write(after_280.reals["MU"]) == ".911"
     assert "DA" not in after_280.reals
     assert after_280.A is None
-    assert seen[-1][1].reals["MX"].to_bytes().hex() == result.reals["MX"]
+    assert stops[-1][1].reals["MX"].to_bytes().hex() == result.reals["MX"]
 
 
 digits = st.text("0123456789", min_size=1, max_size=4)

@@ -17,7 +17,7 @@ from impact88.program.scene import sample
 PUBLISHED = [(1, "run1"), (2, "run2"), (3, "table3")]
 
 
-def published(name: str) -> str:
+def published_text(name: str) -> str:
     return (files("impact88.legacy") / f"{name}-as-printed.txt").read_bytes().decode()
 
 
@@ -49,41 +49,41 @@ def test_a_copy_of_the_listing_prints_the_page_of_its_port(number: int) -> None:
 def test_an_apple_printed_these_numbers_in_1980_and_no_double_does() -> None:
     """COMPUTE!, September/October 1980, page 36, Table 5: interval halving, twenty steps twice."""
     folder = files("impact88.golden") / "printouts"
-    printed = [Decimal(text) for text in (folder / "compute1980.txt").read_text("utf-8").split()]
-    _, displayed = session((folder / "compute1980.bas").read_text("utf-8"))
-    assert [Decimal(text) for text in displayed.split()] == printed
-    assert len(printed) == 40
+    numbers = [Decimal(text) for text in (folder / "compute1980.txt").read_text("utf-8").split()]
+    _, output = session((folder / "compute1980.bas").read_text("utf-8"))
+    assert [Decimal(text) for text in output.split()] == numbers
+    assert len(numbers) == 40
     doubles = []
     for a, b, root in ((0.3, 0.4, 0.35740292), (2, 2.2, 2.1532922)):
         for _ in range(20):
             middle = (a + b) / 2
             doubles.append(Decimal(f"{middle:.9g}"))
             a, b = (middle, b) if middle < root else (a, middle)
-    assert sum(x == y for x, y in zip(doubles, printed, strict=True)) == 32
+    assert sum(x == y for x, y in zip(doubles, numbers, strict=True)) == 32
 
 
 @pytest.mark.parametrize(("number", "name"), PUBLISHED)
 def test_every_published_character_is_printed(number: int, name: str) -> None:
-    assert results(run(sample(number)).printout) == results(published(name))
+    assert results(run(sample(number)).printout) == results(published_text(name))
 
 
 @pytest.mark.parametrize(("number", "name"), PUBLISHED)
 def test_replies_are_those_typed_in_1988(number: int, name: str) -> None:
-    typed = replies(run(sample(number)).printout)
-    assert typed == replies(published(name))
-    assert len(typed) == 2
+    keys = replies(run(sample(number)).printout)
+    assert keys == replies(published_text(name))
+    assert len(keys) == 2
 
 
 @pytest.mark.parametrize(("number", "name"), PUBLISHED)
 def test_comparison_with_the_published_text_sees_one_digit(number: int, name: str) -> None:
     """Every digit of the published text counts: changing any of them fails the comparison."""
-    printed = results(run(sample(number)).printout)
-    text = published(name)
+    numbers = results(run(sample(number)).printout)
+    text = published_text(name)
     start = text.index("MA=")
     for match in re.finditer(r"\d", text[start:]):
         at = start + match.start()
-        changed = text[:at] + str((int(match[0]) + 1) % 10) + text[at + 1 :]
-        assert results(changed) != printed
+        alteration = text[:at] + str((int(match[0]) + 1) % 10) + text[at + 1 :]
+        assert results(alteration) != numbers
 
 
 @pytest.mark.parametrize("number", [1, 2])

@@ -55,7 +55,7 @@ def test_pages_of_captured_runs(step):
 @pytest.mark.captures
 @pytest.mark.parametrize("printed", [True, False], ids=["printed C", "walked steps"])
 def test_memory_after_captured_runs(printed):
-    """By the listing as it is printed into the library, and by its steps, walked."""
+    """The listing as it is printed into the library, and its steps, walked."""
     steps = kernel.listing().steps
     rows = np.zeros(len(CASES), row_type(len(steps.variables), ELEMENTS, len(PRINTED)))
     Program(steps, in_library=printed).run(list(COLUMNS.values()), rows)
@@ -75,9 +75,9 @@ def test_memory_after_captured_runs(printed):
 @pytest.mark.parametrize("path", captures.arithmetic_files(), ids=captures.vector_file_id)
 def test_captured_calls_of_the_rom(path):
     calls = list(captures.vectors(path))[:: CALLS_STEP if path.parent.name == "arithmetic" else 1]
-    for operation, first, second, extension, expected in calls:
+    for operation, first, second, extension, answer in calls:
         outcome = romcalls.call(operation, first, second, extension)
-        assert outcome is None or outcome == result(expected), (first, second)
+        assert outcome is None or outcome == result(answer), (first, second)
 
 
 SPECIAL = ["0", "-0", ".", "1E38", "-1E38", "1E-38", "1E19", "-10", "10", "90", "1E9", "- 1 2.5"]
@@ -161,8 +161,8 @@ def test_stored_reals_are_those_of_the_emulator():
     machine = load_machine(sample(3))
     machine.run()
     results = replay(sample(3))
-    stored = {name: f"{results.reals(name)[0]:010x}" for name in ("KI", "KF", "D1", "AG")}
-    assert stored == {name: machine.value(name) for name in stored}
+    contents = {name: f"{results.reals(name)[0]:010x}" for name in ("KI", "KF", "D1", "AG")}
+    assert contents == {name: machine.value(name) for name in contents}
     assert f"{results.reals('VBX')[0]:010x}" == machine.array("A")["data"][7 * 7 + 3]
 
 

@@ -367,11 +367,11 @@ class _Compiler:
         self._subscripts(self._array)
         shape = "".join(token.text for token in tokens[: len(tokens) - len(self._tokens)])
         self._emit("DIM")
-        others = ""
+        arrays = ""
         while not self._next_is("end"):
-            others += self._take()
-        if not re.fullmatch(rf"(,[A-Z0-9]+({re.escape(shape)}|\([0-9,]+\)))*", others):
-            raise NotCompiled(others)
+            arrays += self._take()
+        if not re.fullmatch(rf"(,[A-Z0-9]+({re.escape(shape)}|\([0-9,]+\)))*", arrays):
+            raise NotCompiled(arrays)
 
     # --- formulas ---
 

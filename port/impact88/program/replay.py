@@ -349,15 +349,15 @@ def _scene(cells: Cells, row: int) -> Scene:
 def _run_port(rows: Rows, scene: Scene) -> str:
     """Run a scene by the port, fill its row and return its printout."""
     fields: list[str] = []
-    stored: list[Real] = []
+    stores: list[Real] = []
 
     def write(x: Real) -> str:
         fields.append(APPLESOFT.write(x))
         return fields[-1]
 
     def store(x: Real) -> Real:
-        stored.append(APPLESOFT.LET(x))
-        return stored[-1]
+        stores.append(APPLESOFT.LET(x))
+        return stores[-1]
 
     record = run(scene, APPLESOFT._replace(write=write, LET=store))
     ending = ZERO_DETERMINANT_LINE if record.zero_determinant else END_LINE
@@ -366,8 +366,8 @@ def _run_port(rows: Rows, scene: Scene) -> str:
     rows["fields"][0, : len(fields)] = fields
     if record.A:
         rows["array"] = list(map(_stored_number, record.A["data"]))
-    kept = {f"{n}'": x.to_bytes().hex() for n, x in zip(BEFORE, stored[LINE_340], strict=False)}
-    values = {**record.reals, **kept}
+    before = {f"{n}'": x.to_bytes().hex() for n, x in zip(BEFORE, stores[LINE_340], strict=False)}
+    values = {**record.reals, **before}
     for k, name in enumerate(kernel.listing().steps.variables):
         rows["reals"][0, k] = _stored_number(values.get(name, "0"))
     return record.printout

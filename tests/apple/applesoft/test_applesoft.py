@@ -12,15 +12,15 @@ from impact88.apple.applesoft.errorcodes import CODES
 @pytest.mark.captures
 @pytest.mark.parametrize("path", captures.arithmetic_files(), ids=captures.vector_file_id)
 def test_every_vector(path):
-    checked = 0
+    count = 0
     wrong = []
     for operation, first, second, extension, result in captures.vectors(path):
-        checked += 1
+        count += 1
         got = captured.call(operation, first, second, extension)
         if got != captured.result(result):
             wrong.append((operation, first, second, extension, result, got))
-    assert checked
-    assert not wrong, f"{len(wrong)} of {checked}, first {wrong[0]}"
+    assert count
+    assert not wrong, f"{len(wrong)} of {count}, first {wrong[0]}"
 
 
 @pytest.mark.captures
@@ -29,8 +29,8 @@ def test_a_changed_digit_is_seen():
         *call, result = next(
             row for row in captures.vectors(path) if captured.result(row[-1]) != "zero"
         )
-        other = result[:-1] + ("1" if result[-1] != "1" else "2")
-        assert captured.call(*call) != captured.result(other)
+        alteration = result[:-1] + ("1" if result[-1] != "1" else "2")
+        assert captured.call(*call) != captured.result(alteration)
 
 
 def test_an_error_code_is_the_offset_of_its_message_in_the_rom():

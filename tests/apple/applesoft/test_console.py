@@ -12,9 +12,9 @@ from impact88.apple.applesoft.operators import Real
 
 
 def console(*lines: str) -> tuple[Console, list[str]]:
-    shown: list[str] = []
+    screen_texts: list[str] = []
     keyboard = iter(lines)
-    return Console(lambda: next(keyboard, None), shown.append), shown
+    return Console(lambda: next(keyboard, None), screen_texts.append), screen_texts
 
 
 @pytest.mark.parametrize(
@@ -29,17 +29,17 @@ def console(*lines: str) -> tuple[Console, list[str]]:
     ],
 )
 def test_a_line_is_edited_as_the_monitor_does(keys: str, line: str, screen: str) -> None:
-    c, shown = console(keys)
+    c, screen_texts = console(keys)
     assert c.read_line("?") == line
-    assert "".join(shown) == screen
+    assert "".join(screen_texts) == screen
 
 
 def test_a_full_line_is_abandoned() -> None:
     """$FD84: the 256th character cancels the line; the bell rings from the 249th on."""
-    c, shown = console("A" * 255 + "B")
+    c, screen_texts = console("A" * 255 + "B")
     assert c.read_line("?") == ""
-    assert "".join(shown).endswith("B\a\\\n?\n")
-    assert "".join(shown).count("\a") == 8
+    assert "".join(screen_texts).endswith("B\a\\\n?\n")
+    assert "".join(screen_texts).count("\a") == 8
 
 
 @pytest.mark.parametrize(
@@ -47,18 +47,18 @@ def test_a_full_line_is_abandoned() -> None:
     [(["1,2,3"], "?1,2,3\n"), (["1,2", "3"], "?1,2\n??3\n"), (["1", "2", "3"], "?1\n??2\n??3\n")],
 )
 def test_three_values_of_a_reply(lines: list[str], asked: str) -> None:
-    c, shown = console(*lines)
+    c, screen_texts = console(*lines)
     (values,) = [[reply(None) for _ in range(3)] for reply in c.input(decimaltext.read, real.ZERO)]
     assert values == [decimaltext.number(text) for text in "123"]
-    assert "".join(shown).replace("\0", "") == asked  # the monitor's own prompt
+    assert "".join(screen_texts).replace("\0", "") == asked  # the monitor's own prompt
 
 
 def test_control_d_speaks_to_the_disk() -> None:
-    c, shown = console()
+    c, screen_texts = console()
     c.put("\x04PR#1\n")
     c.put("A\n")
     assert c.slot == 1
-    assert shown == ["A\n"]  # the printer is the screen where there is none
+    assert screen_texts == ["A\n"]  # the printer is the screen where there is none
 
 
 def test_an_array_has_the_elements_that_DIM_names() -> None:

@@ -82,11 +82,11 @@ def test_what_print_wrote_reads_back_and_prints_alike(number):
     """Not the same bits always, but no further off than reading and writing may be."""
     text = decimaltext.write(number)
     try:
-        again = decimaltext.number(text)
+        number = decimaltext.number(text)
     except ApplesoftError:
         assert text.endswith("E+38")
         return
-    if real.from_stored(real.to_stored(again))[0]:
-        assert abs(float(decimaltext.write(real.rounded(again))) - float(text)) <= abs(
+    if real.from_stored(real.to_stored(number))[0]:
+        assert abs(float(decimaltext.write(real.rounded(number))) - float(text)) <= abs(
             float(text)
         ) * (READING + WRITING) * (1 + STEP)

@@ -46,8 +46,8 @@ def test_the_published_floor():
     """Run 1 prints XB= 14.51 for 14.52, because the product is not stored before INT."""
     xb = of("14.52").rounded()
     assert decimaltext.write((Real(real.floor((100 * xb).number)) / 100).number) == "14.51"
-    stored = (100 * xb).rounded()
-    assert decimaltext.write((Real(real.floor(stored.number)) / 100).number) == "14.52"
+    contents = (100 * xb).rounded()
+    assert decimaltext.write((Real(real.floor(contents.number)) / 100).number) == "14.52"
 
 
 def test_the_digits_typed_matter():
@@ -68,7 +68,7 @@ def test_the_digits_typed_matter():
     ],
 )
 def test_the_sign_of_a_huge_power_hangs_on_what_int_left(exponent, left, sign):
-    """From 2^31 on INT does not look at the number; an earlier one's byte is still there."""
+    """INT does not look at numbers from 2^31 on; an earlier one's byte is still there."""
     minus_one, exponent = decimaltext.number("-1"), decimaltext.number(exponent)
     assert functions.power_and_byte(minus_one, exponent, left)[0][2] == sign
     if not left:
@@ -171,20 +171,20 @@ def test_quotient_times_divisor(a, b):
 def test_negating_twice_and_storing_is_storing(a):
     assert real.negate(real.negate(a)) == a
     try:
-        stored = real.to_stored(a)
+        contents = real.to_stored(a)
     except ApplesoftError:
         return
-    assert real.from_stored(stored) == real.rounded(a)
-    assert real.to_stored(real.from_stored(stored)) == stored
+    assert real.from_stored(contents) == real.rounded(a)
+    assert real.to_stored(real.from_stored(contents)) == contents
 
 
 @given(numbers, numbers)
 def test_comparison_is_the_order_but_for_the_last_byte(a, b):
-    stored = real.from_stored(real.to_stored(a)) if a[1] < real.LIMIT - 0x80 else a
-    difference = exact(b) - exact(stored)
+    contents = real.from_stored(real.to_stored(a)) if a[1] < real.LIMIT - 0x80 else a
+    difference = exact(b) - exact(contents)
     coarse = abs(difference) <= abs(exact(b)) * Fraction(1, 2**22)
     if not coarse:
-        assert real.compare(stored, b) == (1 if difference > 0 else -1)
+        assert real.compare(contents, b) == (1 if difference > 0 else -1)
 
 
 @given(st.integers(2**31, 2**32 - 1), st.integers(2**31, 2**32 - 1))

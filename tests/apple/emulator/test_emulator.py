@@ -28,10 +28,10 @@ TYPED_ONLY = {"CONT", "DEL", "LIST"}
 
 
 def test_every_statement_s_method_is_named_for_a_keyword():
-    named = {f"{word.lower().rstrip(':')}_" for word in STATEMENTS} | {"break_"}
+    names = {f"{word.lower().rstrip(':')}_" for word in STATEMENTS} | {"break_"}
     methods = [name for name in dir(Machine) if name.endswith("_") and name[0] != "_"]
     for name in methods:
-        assert name in named, (
+        assert name in names, (
             f"{name} is called by no statement; next step: name the method for its keyword in "
             "apple/emulator/tokens.py, in small letters with an underscore behind it, or give the "
             "keyword an entry in `statements` of `Machine.__init__` (apple/emulator/machine.py)"
@@ -42,7 +42,7 @@ def test_every_statement_that_is_done_stands_in_a_captured_program():
     """What the machine does is compared with the ROM: no statement is there on trust. That is said
     of the project's own captures, whatever others a folder holds."""
     machine = session("", "")[0].machine
-    used = {
+    tokens_in_programs = {
         token
         for part in ("programs", "corners/programs")
         for path in sorted((captures.ROOT / "golden" / part).glob("*.bas"))
@@ -50,8 +50,8 @@ def test_every_statement_that_is_done_stands_in_a_captured_program():
         for token in tokens
     }
     for word, does in zip(STATEMENTS, machine.statements, strict=True):
-        refused = isinstance(does, partial) and does.func == machine.refuse
-        assert refused or word in TYPED_ONLY or TOKENS[word] in used, (
+        is_refused = isinstance(does, partial) and does.func == machine.refuse
+        assert is_refused or word in TYPED_ONLY or TOKENS[word] in tokens_in_programs, (
             f"{word} is done, and no captured program has it; next step: a program with the ROM's "
             "own output in golden/programs/"
         )
@@ -60,18 +60,18 @@ def test_every_statement_that_is_done_stands_in_a_captured_program():
 @pytest.mark.parametrize("path", PROGRAMS, ids=[path.stem for path in PROGRAMS])
 def test_captured_program(path):
     keys = path.with_suffix(".in")
-    machine, displayed = session(
+    machine, output = session(
         captures.printed(path.read_bytes()),
         captures.printed(keys.read_bytes()) if keys.exists() else "",
     )
-    expected = captures.printed(path.with_suffix(".out").read_bytes())
-    if displayed != expected and (refused := machine.machine.refused):
-        word = next(iter(refused))
+    answer = captures.printed(path.with_suffix(".out").read_bytes())
+    if output != answer and (refusals := machine.machine.refused):
+        word = next(iter(refusals))
         pytest.fail(
             f"{path.name} has {word}, which is not done; next step: the statement's method in the "
             "module of its kind in emulator/"
         )
-    assert displayed == expected
+    assert output == answer
     screen = path.with_suffix(".scr")
     if screen.exists():
         assert machine.screen_text() == captures.printed(screen.read_bytes())
@@ -80,8 +80,8 @@ def test_captured_program(path):
 @pytest.mark.parametrize("case", FUZZ, ids=[case["name"] for case in FUZZ])
 def test_captured_random_program(case):
     # these hold what the machine sent, without blanks for the columns that commas skip
-    _, displayed = session(case["program"], case["keyboard"], blanks=False)
-    assert displayed == case["output"]
+    _, output = session(case["program"], case["keyboard"], blanks=False)
+    assert output == case["output"]
 
 
 @pytest.mark.parametrize("case", SCENES, ids=[case["id"] for case in SCENES])
@@ -102,8 +102,8 @@ def test_a_changed_bit_in_a_capture_is_seen():
     case = SCENES[0]
     run = run_emulated(Scene(case["scene"]), dos=False)
     name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
-    changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
-    assert memory_contents(run.reals, run.A) != memory_contents(changed, case["A"])
+    alteration = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
+    assert memory_contents(run.reals, run.A) != memory_contents(alteration, case["A"])
 
 
 def test_the_monitors_vtab_and_the_branch_before_home_return() -> None:

@@ -18,7 +18,7 @@ from impact88.apple.emulator.tokens import KEYWORDS, TOKENS, detokenise, split_n
 BEL = "\a"
 
 
-def displayed(program: str, keys: str = "") -> str:
+def output(program: str, keys: str = "") -> str:
     return session(program, keys)[1]
 
 
@@ -104,22 +104,22 @@ def test_line_numbers_end_at_63999():
     ],
 )
 def test_programs(program, expected):
-    assert displayed(program) == expected
+    assert output(program) == expected
 
 
 def test_a_keyword_inside_hides_the_rest():
     # XOR is X OR: 5X is 5 and then a variable
-    assert displayed("10 X=1:PRINT 5 XOR 3") == "51\n"
+    assert output("10 X=1:PRINT 5 XOR 3") == "51\n"
 
 
-def nested(n: int) -> str:
+def nested_loops(n: int) -> str:
     names = "ABCDEFGHIJKLM"[:n]
     return "".join(f"{10 * i} FOR {v}=1 TO 1\n" for i, v in enumerate(names, 1)) + "900 PRINT 1\n"
 
 
 def test_ten_loops_deep_and_no_deeper():
-    assert displayed(nested(10)) == "1\n"
-    assert displayed(nested(11)) == f"\n?OUT OF MEMORY ERROR{BEL} IN 110"
+    assert output(nested_loops(10)) == "1\n"
+    assert output(nested_loops(11)) == f"\n?OUT OF MEMORY ERROR{BEL} IN 110"
 
 
 @pytest.mark.parametrize(
@@ -142,14 +142,14 @@ def test_loops_and_subroutines_share_the_stack(loops, subroutines, last, room):
     lines += [f"GOSUB {10 * (loops + number + 1)}" for number in range(subroutines)]
     program = "\n".join(f"{10 * number} {line}" for number, line in enumerate([*lines, last]))
     error = f"\n?OUT OF MEMORY ERROR{BEL} IN {10 * len(lines)}"
-    assert displayed(f"{program}\n900 END") == ("" if room else error)
+    assert output(f"{program}\n900 END") == ("" if room else error)
 
 
 def test_parentheses_as_deep_as_the_stack():
     def program(n: int) -> str:
         return f"10 PRINT {'(' * n}1{')' * n}"
 
-    deepest = next(n for n in range(100) if "MEMORY" in displayed(program(n)))
+    deepest = next(n for n in range(100) if "MEMORY" in output(program(n)))
     # PRINT begins 4 bytes down, each parenthesis takes 5, 59 of 248 must stay
     assert deepest == (248 - 59 - 4) // 5 + 1
 
@@ -157,9 +157,9 @@ def test_parentheses_as_deep_as_the_stack():
 def test_the_stack_decides_at_the_moment():
     """25 subroutines deep an addition has no room, a constant has."""
     program = "10 N=N+1:IF N<{n} THEN GOSUB 10\n20 PRINT {what}:END"
-    assert displayed(program.format(n=24, what="N+N")) == "48\n"
+    assert output(program.format(n=24, what="N+N")) == "48\n"
     error = f"\n?OUT OF MEMORY ERROR{BEL} IN 10"
-    assert displayed(program.format(n=99, what="N")) == error
+    assert output(program.format(n=99, what="N")) == error
 
 
 def test_an_error_under_onerr_hides_the_loops_until_resume():
@@ -167,74 +167,74 @@ def test_an_error_under_onerr_hides_the_loops_until_resume():
         "10 ONERR GOTO 50\n20 FOR I=1 TO 2:D=1-1:PRINT 1/D:NEXT\n40 END\n"
         "50 PRINT PEEK(222):N=N+1:IF N=2 THEN POKE 216,0\n60 {way}"
     )
-    assert displayed(program.format(way="NEXT")) == f"133\n0\n\n?NEXT WITHOUT FOR ERROR{BEL} IN 60"
-    assert displayed(program.format(way="CALL -3288:NEXT")) == ("133\n133\n")
+    assert output(program.format(way="NEXT")) == f"133\n0\n\n?NEXT WITHOUT FOR ERROR{BEL} IN 60"
+    assert output(program.format(way="CALL -3288:NEXT")) == ("133\n133\n")
 
 
 def test_stop_and_cont():
-    assert displayed("10 PRINT 1:STOP:PRINT 2\n20 PRINT 3", "CONT\nCONT\n") == (
+    assert output("10 PRINT 1:STOP:PRINT 2\n20 PRINT 3", "CONT\nCONT\n") == (
         f"1\n\nBREAK{BEL} IN 10\n]CONT\n2\n3\n\n]CONT\n"
     )
 
 
 def test_run_of_a_missing_line_shows_what_becomes_of_the_line_number():
-    _, shown = session("20 PRINT 1", "RUN 99\n")
-    assert shown.endswith(f"?UNDEF'D STATEMENT ERROR{BEL} IN 65044")
+    _, response = session("20 PRINT 1", "RUN 99\n")
+    assert response.endswith(f"?UNDEF'D STATEMENT ERROR{BEL} IN 65044")
 
 
 def test_a_loop_typed_at_the_prompt():
-    assert displayed("10 REM", "FOR I=1 TO 3:PRINT I;:NEXT:PRINT\n") == (
+    assert output("10 REM", "FOR I=1 TO 3:PRINT I;:NEXT:PRINT\n") == (
         "\n]FOR I=1 TO 3:PRINT I;:NEXT:PRINT\n123\n"
     )
 
 
 def test_trace_counts_statements_not_ifs():
     program = '10 TRACE:FOR I=1 TO 2:IF I=1 THEN PRINT "A"\n20 NEXT:NOTRACE'
-    assert displayed(program) == "#10 #10 A\n#20 #10 #20 #20 "
+    assert output(program) == "#10 #10 A\n#20 #10 #20 #20 "
 
 
 def test_get_of_a_wrong_key_believes_it_is_at_the_prompt():
-    assert displayed("10 GET A", "X") == f"\n?SYNTAX ERROR{BEL}"
+    assert output("10 GET A", "X") == f"\n?SYNTAX ERROR{BEL}"
 
 
 def test_a_bad_reply_under_onerr_is_code_254():
     program = "10 ONERR GOTO 30\n20 INPUT A:PRINT A:END\n30 PRINT PEEK(222):RESUME"
-    assert displayed(program, "X\n7\n") == "?X\n254\n?7\n7\n"
+    assert output(program, "X\n7\n") == "?X\n254\n?7\n7\n"
 
 
 def test_control_c_as_a_reply_breaks():
-    assert displayed("10 INPUT A", "\x03\nPRINT 5\n") == f"?\x03\n\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
+    assert output("10 INPUT A", "\x03\nPRINT 5\n") == f"?\x03\n\nBREAK{BEL} IN 10\n]PRINT 5\n5\n"
 
 
 def test_input_into_an_integer_variable():
-    assert displayed("10 INPUT A%:PRINT A%", "3.7\n") == "?3.7\n3\n"
+    assert output("10 INPUT A%:PRINT A%", "3.7\n") == "?3.7\n3\n"
 
 
 def test_strings_take_room_unless_the_program_holds_them():
     program = '10 A$="X":B$=A$:C$=A$+"Y":D$="":PRINT {}'
     free = 0xC000 - (0x801 + len(tokenise(program.format("FRE(0)")[3:])) + 7) - 4 * 7
-    assert displayed(program.format("FRE(0)")) == f"{free - 2 - 65536}\n"
+    assert output(program.format("FRE(0)")) == f"{free - 2 - 65536}\n"
 
 
 def test_himem_and_lomem_bound_the_room():
-    assert displayed("10 HIMEM:2200:DIM A(50)") == f"\n?OUT OF MEMORY ERROR{BEL} IN 10"
-    assert displayed("10 A=1:LOMEM:4000:PRINT A;PEEK(105)+256*PEEK(106)") == "04000\n"
+    assert output("10 HIMEM:2200:DIM A(50)") == f"\n?OUT OF MEMORY ERROR{BEL} IN 10"
+    assert output("10 A=1:LOMEM:4000:PRINT A;PEEK(105)+256*PEEK(106)") == "04000\n"
 
 
 @pytest.mark.parametrize(
-    ("name", "statement", "shown"),
+    ("name", "statement", "response"),
     [((65, 128), 'A$="XYZ"', "LEN(A$)"), ((65, 0), "A=5", "A"), ((193, 128), "A%=5", "A%")],
 )
 def test_a_variable_in_the_addresses_of_devices_keeps_nothing(
-    name: tuple[int, int], statement: str, shown: str
+    name: tuple[int, int], statement: str, response: str
 ) -> None:
     """Its name is the last two bytes of RAM, its value begins at $C000."""
     first, second = name
     assert (
-        displayed(
+        output(
             f"10 POKE 49150,{first}:POKE 49151,{second}\n"
             f"20 POKE 107,5:POKE 108,192:POKE 105,254:POKE 106,191\n"
-            f"30 {statement}:PRINT {shown}"
+            f"30 {statement}:PRINT {response}"
         )
         == "0\n"
     )
@@ -244,12 +244,12 @@ def test_poke_changes_a_token_of_the_running_program():
     # line 20's + becomes -
     program = "10 POKE 2049+{at},201\n20 PRINT 5+2"
     at = 4 + len(tokenise("POKE 2049+99,201")) + 1 + 4 + 2
-    assert displayed(program.format(at=at)) == "3\n"
+    assert output(program.format(at=at)) == "3\n"
 
 
 def test_flash_sets_a_bit_in_what_is_sent():
-    machine, shown = session('10 HOME:FLASH:PRINT "A1":NORMAL')
-    assert shown == "Aq\n"
+    machine, response = session('10 HOME:FLASH:PRINT "A1":NORMAL')
+    assert response == "Aq\n"
     assert machine.screen_text().startswith("A1\n")
 
 
@@ -267,8 +267,8 @@ def test_the_text_window():
 
 
 def test_what_is_not_done_is_said():
-    machine, shown = session("10 CALL 24576", "GR\nPRINT PDL(0)\n")
-    assert shown.count("?SYNTAX ERROR") == 3
+    machine, response = session("10 CALL 24576", "GR\nPRINT PDL(0)\n")
+    assert response.count("?SYNTAX ERROR") == 3
     assert machine.machine.refused == ["CALL 24576", "GR", "PDL"]
 
 
@@ -338,7 +338,7 @@ def test_page_zero_after_a_run(program, keys, address, data):
 
 
 def test_a_line_feed_keeps_the_column():
-    assert displayed('10 PRINT "A";CHR$(10);"B";POS(0)') == "A\nB2\n"
+    assert output('10 PRINT "A";CHR$(10);"B";POS(0)') == "A\nB2\n"
 
 
 def test_a_string_is_where_its_descriptor_points():
@@ -346,13 +346,13 @@ def test_a_string_is_where_its_descriptor_points():
         "20 P=PEEK(105)+256*PEEK(106):S=PEEK(P+3)+256*PEEK(P+4)\n"
         "30 FOR I=0 TO PEEK(P+2)-1:PRINT CHR$(PEEK(S+I));:NEXT"
     )
-    assert displayed(f'10 A$="HELLO"\n{show}') == "HELLO"
-    assert displayed(f'10 A$="HE"+"Y"\n{show}') == "HEY"
+    assert output(f'10 A$="HELLO"\n{show}') == "HELLO"
+    assert output(f'10 A$="HE"+"Y"\n{show}') == "HEY"
 
 
 def test_a_reply_past_the_buffer_is_abandoned():
-    shown = displayed("10 INPUT A$:PRINT LEN(A$)", "X" * 258 + "\n")
-    assert shown == "?" + "X" * 248 + f"X{BEL}" * 8 + "\\\nXX\n2\n"
+    response = output("10 INPUT A$:PRINT LEN(A$)", "X" * 258 + "\n")
+    assert response == "?" + "X" * 248 + f"X{BEL}" * 8 + "\\\nXX\n2\n"
 
 
 def test_arrays_in_memory():
@@ -360,7 +360,7 @@ def test_arrays_in_memory():
         '10 DIM A(2,3):I=0:P=0:P=PEEK(107)+256*PEEK(108)\n20 FOR I=0 TO 8:PRINT PEEK(P+I);" ";:NEXT'
     )
     # name, length 9 + 12 * 5, two dimensions: 4 and 3 elements
-    assert displayed(program) == "65 0 69 0 2 0 4 0 3 "
+    assert output(program) == "65 0 69 0 2 0 4 0 3 "
 
 
 def test_a_program_in_python():
@@ -417,11 +417,11 @@ def test_a_break_from_outside():
 
 
 def test_machines_do_not_share_values():
-    one, other = Applesoft(), Applesoft()
-    one.type_line("A=1:DIM B(3)")
-    other.type_line("A=2")
-    assert (one.value("A"), other.value("A")) == ("8100000000", "8200000000")
-    assert other.array("B") is None
+    first, second = Applesoft(), Applesoft()
+    first.type_line("A=1:DIM B(3)")
+    second.type_line("A=2")
+    assert (first.value("A"), second.value("A")) == ("8100000000", "8200000000")
+    assert second.array("B") is None
 
 
 def test_a_terminal_shows_what_is_typed_itself():
@@ -451,16 +451,16 @@ def test_variables_that_an_error_leaves(program, name, value):
 def test_a_program_may_set_any_window():
     program = "10 POKE 33,{}:POKE 32,{}:POKE 35,{}:POKE 34,{}:HOME:FOR I=1 TO 60:PRINT I:NEXT"
     for window in ((40, 0, 24, 24), (0, 200, 255, 250), (255, 255, 0, 255), (33, 39, 1, 0)):
-        machine, shown = session(program.format(*window))
-        assert shown.endswith("60\n")
+        machine, response = session(program.format(*window))
+        assert response.endswith("60\n")
         assert machine.screen_text().count("\n") == 24
 
 
 @pytest.mark.parametrize("address", range(2049, 2090))
 def test_a_program_may_poke_itself(address):
     lines = '10 POKE {0},5:PRINT "X":GOTO 20\n20 FOR I=1 TO 3:PRINT I:NEXT:POKE {0},0\n30 PRINT "Y"'
-    machine, shown = session(lines.format(address), "LIST\nRUN\n20 PRINT\nLIST\nRUN\n")
-    assert shown
+    machine, response = session(lines.format(address), "LIST\nRUN\n20 PRINT\nLIST\nRUN\n")
+    assert response
     assert len(list(machine.machine.lines())) <= 5
 
 
@@ -484,7 +484,7 @@ def test_refusals_are_remembered_a_few_times():
 
 def test_strings_lie_where_the_program_can_see_them():
     program = '10 A$="AB"+"C":FOR I=49149 TO 49151:PRINT CHR$(PEEK(I));:NEXT:POKE 49150,90:PRINT A$'
-    assert displayed(program) == "ABCAZC\n"
+    assert output(program) == "ABCAZC\n"
 
 
 STEPS = st.lists(
@@ -505,10 +505,10 @@ def test_what_can_be_typed_survives_save_and_load(words):
 
 def test_cont_goes_on_in_the_line_it_stands_in():
     """And after a subroutine called at the prompt the machine believes it is in line 0."""
-    shown = displayed("10 STOP\n20 PRINT 1/0", "CONT\n")
-    assert shown.endswith(f"\n?DIVISION BY ZERO ERROR{BEL} IN 20")
-    shown = displayed("10 REM", "20 PRINT 1:RETURN\nGOSUB 20\nCONT\n")
-    assert shown.endswith(f"?RETURN WITHOUT GOSUB ERROR{BEL} IN 0")
+    response = output("10 STOP\n20 PRINT 1/0", "CONT\n")
+    assert response.endswith(f"\n?DIVISION BY ZERO ERROR{BEL} IN 20")
+    response = output("10 REM", "20 PRINT 1:RETURN\nGOSUB 20\nCONT\n")
+    assert response.endswith(f"?RETURN WITHOUT GOSUB ERROR{BEL} IN 0")
 
 
 def test_the_echo_of_keys_is_never_inverse():
@@ -520,8 +520,8 @@ def test_the_echo_of_keys_is_never_inverse():
 
 def test_a_temporary_that_onerr_left_is_in_the_way_of_numbers_too():
     program = '10 ONERR GOTO 30\n20 PRINT ("A"+"B")+("C"+"D"+LEFT$("X",0))\n30 POKE 216,0:PRINT {}'
-    assert displayed(program.format('"X"')).startswith("\n?FORMULA TOO COMPLEX")
-    assert displayed(program.format("1")).startswith("\n?FORMULA TOO COMPLEX")
+    assert output(program.format('"X"')).startswith("\n?FORMULA TOO COMPLEX")
+    assert output(program.format("1")).startswith("\n?FORMULA TOO COMPLEX")
 
 
 @pytest.mark.parametrize(
@@ -558,13 +558,13 @@ def test_a_program_may_poke_its_own_text_and_variables(program, byte):
     ],
 )
 def test_a_string_as_divisor_divides_by_its_descriptor(expression, printed):
-    assert displayed(f"10 PRINT {expression}") == printed  # as the ROM answers
+    assert output(f"10 PRINT {expression}") == printed  # as the ROM answers
 
 
 def test_a_program_run_before_leaves_nothing_behind():
     text = '10 A=A+1:B$=B$+"X":PRINT A;B$;FRE(0);RND(1)\n20 POKE 2055,66'
-    shown = [displayed(text), displayed("10 POKE 2055,67:A=7"), displayed(text)]
-    assert shown[0] == shown[2]
+    response = [output(text), output("10 POKE 2055,67:A=7"), output(text)]
+    assert response[0] == response[2]
 
 
 def stack_at_error(line: str) -> int:
@@ -606,7 +606,7 @@ def test_an_error_is_detected_below_the_routines_that_lead_to_it():
     ],
 )
 def test_the_monitor_s_routines_for_the_screen(address, rows):
-    """As the Apple II Reference Manual describes them, with the cursor on the C of ABCDE."""
+    """The Apple II Reference Manual describes them; the cursor is on the C of ABCDE."""
     machine, _ = session(
         '10 HOME:VTAB 4:HTAB 1:PRINT "ABCDE":PRINT "FGH";:VTAB 4:HTAB 3:'
         f'CALL {address}:PRINT "!";:VTAB 20'

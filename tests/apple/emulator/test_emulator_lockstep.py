@@ -62,20 +62,20 @@ def test_published_run(number):
 @pytest.mark.parametrize("n", [3, 60])
 def test_one_bit_in_the_port_is_caught(monkeypatch, n):
     """The last mantissa bit of the n-th value that the port stores."""
-    left = n
+    count = n
 
-    def spoiled(x: Real) -> Real:
-        nonlocal left
+    def store_with_error(x: Real) -> Real:
+        nonlocal count
         e, m, s = x.rounded().number
         if e:
-            left -= 1
-        return Real((e, m ^ 0x100, s)) if e and not left else Real((e, m, s))
+            count -= 1
+        return Real((e, m ^ 0x100, s)) if e and not count else Real((e, m, s))
 
     monkeypatch.setitem(
-        arithmetics.ARITHMETICS, "applesoft", arithmetics.APPLESOFT._replace(LET=spoiled)
+        arithmetics.ARITHMETICS, "applesoft", arithmetics.APPLESOFT._replace(LET=store_with_error)
     )
     assert first_difference(sample(1)) is not None
-    assert left <= 0
+    assert count <= 0
 
 
 @pytest.mark.parametrize(
@@ -102,5 +102,5 @@ def test_one_bit_in_the_emulator_is_caught():
     )
     difference = first_difference(sample(1), text + poke + "\n")
     assert difference is not None
-    one, other = difference
-    assert one[1] != other[1]
+    port, emulator = difference
+    assert port[1] != emulator[1]

@@ -111,9 +111,9 @@ def test_every_captured_program_loads_as_it_was(form: Any) -> None:
         machine = machine_with(TEXTS[name])
         lines = lines_of(machine)
         # blanks at the end of a line are on no screen
-        seen = not any(tokens.endswith(b" ") for _, tokens in lines)
+        is_visible = not any(tokens.endswith(b" ") for _, tokens in lines)
         # LIST 0 shows all lines
-        if lines and seen and lines[0][0]:
+        if lines and is_visible and lines[0][0]:
             assert read_program(form(machine)).lines == lines, name
 
 
@@ -137,7 +137,7 @@ STATEMENTS = st.text(
 @example({1000: ["END", "0" * 26, '"000 ']})
 @given(st.dictionaries(st.integers(0, 63999), st.lists(STATEMENTS, max_size=6), max_size=8))
 def test_what_a_person_may_type_loads_as_it_was(program: dict[int, list[str]]) -> None:
-    """As LIST sends it, as SAVE writes it, and tokenised."""
+    """LIST sends it, SAVE writes it, a disk has its tokens."""
     text = "".join(f"{number} {''.join(parts)}\n" for number, parts in program.items())
     machine = machine_with(text[:4000])
     lines = lines_of(machine)
@@ -238,15 +238,15 @@ def test_two_readings_are_refused() -> None:
 
 
 def test_two_ways_to_cut_quotes_are_refused() -> None:
-    """Of three lines with a quote each, which two are one?"""
+    """Three lines have a quote each: any two neighbours may be one."""
     rows = ['10  PRINT "' + "A" * 29, '20  PRINT "' + "B" * 29, '30  PRINT "C']
     rows += ["40 A = " + "1" * 33, " + 1"]
     with pytest.raises(UserError, match=r"row [23] may begin a line or continue line 10"):
         read_program("\n".join(rows))
-    closed = [row + '"' if row.startswith("30") else row for row in rows]
-    closed[0] = closed[0][:-1] + '"'
-    closed[1] = closed[1][:-1] + '"'
-    assert [number for number, _ in read_program("\n".join(closed)).lines] == [10, 20, 30, 40]
+    with_quotes = [row + '"' if row.startswith("30") else row for row in rows]
+    with_quotes[0] = with_quotes[0][:-1] + '"'
+    with_quotes[1] = with_quotes[1][:-1] + '"'
+    assert [number for number, _ in read_program("\n".join(with_quotes)).lines] == [10, 20, 30, 40]
 
 
 def test_apples_text_files_have_high_bits() -> None:
@@ -263,8 +263,8 @@ def test_a_tokenised_file_keeps_its_order_and_says_what_is_left_out() -> None:
     assert read_program(data + b"\x60\x60").remarks == [
         "2 bytes behind the program's last line, such as machine code, are left out"
     ]
-    swapped = data.replace(b"\x0a\0A", b"\x1e\0A")  # 30 before 20, as no one can type
-    machine.load(swapped)
+    disorder = data.replace(b"\x0a\0A", b"\x1e\0A")  # 30 before 20, as no one can type
+    machine.load(disorder)
     assert [number for number, _ in lines_of(machine)] == [30, 20]
     elsewhere = bytearray(data)
     elsewhere[1] = elsewhere[9] = 0x40  # saved from $4001 on
@@ -314,15 +314,15 @@ def test_basic_and_verify_load_the_same(tmp_path: Path) -> None:
         path = tmp_path / name
         path.write_bytes(form if isinstance(form, bytes) else form.encode())
         assert ListingCopy(str(path)).run(sample(1)).page == run(sample(1)).page
-        done = command("basic", input=f"LOAD {path}\nLIST\n")
-        listed = done.out[done.out.rindex("]LIST") :]
-        assert read_program(listed).lines == lines_of(machine)
+        result = command("basic", input=f"LOAD {path}\nLIST\n")
+        listing = result.out[result.out.rindex("]LIST") :]
+        assert read_program(listing).lines == lines_of(machine)
 
 
 def test_save_writes_no_file_that_exists(tmp_path: Path) -> None:
-    typed = tmp_path / "rr.txt"
-    typed.write_text(f"10 PRINT 1\nSAVE {typed}\nPRINT 6*7\n")
-    done = shell(f"impact88 basic < {typed}")
-    assert typed.read_text() == f"10 PRINT 1\nSAVE {typed}\nPRINT 6*7\n"
-    assert "42\n" in done.out
-    assert "rr.txt: exists; expected a new name" in done.err
+    session_file = tmp_path / "rr.txt"
+    session_file.write_text(f"10 PRINT 1\nSAVE {session_file}\nPRINT 6*7\n")
+    result = shell(f"impact88 basic < {session_file}")
+    assert session_file.read_text() == f"10 PRINT 1\nSAVE {session_file}\nPRINT 6*7\n"
+    assert "42\n" in result.out
+    assert "rr.txt: exists; expected a new name" in result.err
