@@ -109,8 +109,8 @@ def test_losses_and_speeds_for_equation_19():
 def test_error_of_equation_19_against_the_measurements():
     off = []
     for collision in staged.collisions():
-        predicted = staged.predicted(collision)
+        changes = staged.prediction(collision)
         table = collision.table2
-        off += [float(predicted["DV" + v.upper()]) - table[f"dV{v}_exp"] for v in "ab"]
+        off += [float(changes["DV" + v.upper()]) - table[f"dV{v}_exp"] for v in "ab"]
     assert round(float(np.sqrt(np.mean(np.square(off)))), 1) == 3.8
     assert round(float(np.abs(off).max()), 1) == 8.2

@@ -20,10 +20,8 @@ from numpy.typing import NDArray
 
 from .. import library
 from ..decimals import to_text
-from ..errors import UserError
-from ..files import replacing
 from ..mechanics.reference import thirty_digits
-from ..mechanics.solve import solve
+from ..mechanics.solve import evaluate, solve
 from ..names import FINAL_VELOCITIES
 from ..program.replay import replay
 from ..program.run import run
@@ -36,7 +34,6 @@ Columns = Mapping[str, Floats]
 SEED = 1988
 ERROR_SCENES = 300  # scenes of a population whose errors are taken: 50 digits take 2 ms each
 REPEATS = 5  # timing repeats, of which the median is reported
-MAX_LOAD = 1.0  # average number of running processes above which times are not written
 LIMITS = """
 E 0 .4, MU -1 1, EM -1 0, DA .5 9, DB .5 9, GA -90 90, PA -180 180, PB -180 180, TA -180 180,
 TB -180 180, MA 60 200, MB 60 200, IA 900 5000, IB 900 5000, UX -90 90, UY -90 90, WA -2 2,
@@ -69,7 +66,7 @@ def round_columns(values: Floats) -> Floats:
     return np.array([float(f"{value:.{SIGNIFICANT}g}") for value in values.tolist()])
 
 
-POPULATIONS: dict[str, Callable[[np.random.Generator, int], Columns]] = {
+POPULATIONS = {
     "cars": cars,
     "heavy B": heavy,
 }
@@ -107,16 +104,10 @@ def replay_velocities(cells: Mapping[str, list[str]]) -> Floats:
 
 def lapack(columns: Columns) -> Floats:
     """Return the final velocities by LAPACK from the listing's equations, lines 300 to 560."""
-    angles = ("GA", "PA", "PB", "TA", "TB")
-    c = {name: np.radians(x) if name in angles else x for name, x in columns.items()}
-    sine, cosine = np.sin(c["GA"]), np.cos(c["GA"])
-    d1, d2 = c["DB"] * np.sin(c["TB"] + c["PB"]), c["DB"] * np.cos(c["TB"] + c["PB"])
-    d3, d4 = c["DA"] * np.sin(c["TA"] + c["PA"]), c["DA"] * np.cos(c["TA"] + c["PA"])
-    ma, mb, ia, ib, em = c["MA"], c["MB"], c["IA"], c["IB"], c["EM"]
-    ux, uy, wa, vx, vy, wb = (c[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
-    along_a = (ux + d3 * wa) * sine - (uy - d4 * wa) * cosine
-    along_b = (vx - d1 * wb) * sine - (vy + d2 * wb) * cosine
-    mu = np.where(along_a < along_b, -c["MU"], c["MU"])
+    quantities = evaluate(columns, ("s", "c", "D1", "D2", "D3", "D4", "mu"))[0].values()
+    sine, cosine, d1, d2, d3, d4, mu = quantities
+    names = ("MA", "MB", "IA", "IB", "EM", "UX", "UY", "WA", "VX", "VY", "WB")
+    ma, mb, ia, ib, em, ux, uy, wa, vx, vy, wb = (columns[name] for name in names)
     o = np.zeros_like(ma)
     rows = (
         (ma, o, mb, o, o, o),
@@ -135,7 +126,7 @@ def lapack(columns: Columns) -> Floats:
     )
     matrix = np.stack([np.stack(row, -1) for row in rows], -2)
     right = np.einsum("nij,nj->ni", matrix, np.column_stack((ux, uy, vx, vy, wa, wb)))
-    right[:, 3] *= -c["E"]
+    right[:, 3] *= -columns["E"]
     right[:, 5] += (1 - em) * (wa - wb)
     solution: Floats = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
     return solution
@@ -156,10 +147,10 @@ class Method(NamedTuple):
     prepare: Callable[[Columns], Any] = dict
     is_compiled: bool = True
 
-    def run(self, prepared: Any) -> Floats:
+    def run(self, inputs: Any) -> Floats:
         """Return the final velocities."""
         with nullcontext() if self.is_compiled else library.switched_off():
-            return self.function(prepared)
+            return self.function(inputs)
 
 
 METHODS = (
@@ -192,7 +183,6 @@ def measure(
     scenes: int = ERROR_SCENES,
     repeats: int = REPEATS,
     effort: float = 1.0,
-    seed: int = SEED,
 ) -> list[Measurement]:
     """Measure every method on every population.
 
@@ -206,8 +196,6 @@ def measure(
         Timing repeats; the median is reported.
     effort : float, default 1
         Fraction of `Method.timed` scenes that is timed.
-    seed : int, default 1988
-        Random seed of the scenes.
 
     Returns
     -------
@@ -216,19 +204,19 @@ def measure(
     """
     measurements = []
     for number, (population, make) in enumerate(POPULATIONS.items()):
-        columns = make(np.random.default_rng([seed, number]), scenes)
+        columns = make(np.random.default_rng([SEED, number]), scenes)
         exact = _reference(columns)
         progress()
         for method in METHODS:
             errors = relative_errors(method.run(method.prepare(columns)), exact)
-            answered = errors[np.isfinite(errors)]
+            finite = errors[np.isfinite(errors)]
             count = max(1, round(method.timed * effort))
-            timed = {name: np.resize(column, count) for name, column in columns.items()}
-            prepared = method.prepare(timed)
+            repetition = {name: np.resize(column, count) for name, column in columns.items()}
+            inputs = method.prepare(repetition)
             seconds = []
             for _ in range(repeats):
                 start = time.process_time()
-                method.run(prepared)
+                method.run(inputs)
                 seconds.append((time.process_time() - start) / count)
                 progress()
             measurements.append(
@@ -236,10 +224,10 @@ def measure(
                     population,
                     method.name,
                     statistics.median(seconds),
-                    float(np.median(answered)),
-                    float(np.quantile(answered, 0.99)),
-                    float(answered.max()),
-                    len(errors) - len(answered),
+                    float(np.median(finite)),
+                    float(np.quantile(finite, 0.99)),
+                    float(finite.max()),
+                    len(errors) - len(finite),
                 )
             )
     return measurements
@@ -298,7 +286,7 @@ def markdown(measurements: Sequence[Measurement], where: Mapping[str, Any]) -> s
         (
             "# Measurements",
             "",
-            f"Made by `impact88 bench --measurements FILE` ({circumstances}).",
+            f"Made by `impact88 bench` ({circumstances}).",
             "Times are CPU time on one core; errors are of the final velocities, against 50",
             "digits, in units of the scene's largest velocity or spin.",
             "",
@@ -308,18 +296,3 @@ def markdown(measurements: Sequence[Measurement], where: Mapping[str, Any]) -> s
             "",
         )
     )
-
-
-def check_quiet(where: Mapping[str, Any]) -> None:
-    """Raise UserError if the computer is too busy for times to be written down."""
-    if where["load"] > MAX_LOAD:
-        raise UserError(
-            f"the computer is busy (load {where['load']}); measurements are written at a load of "
-            f"at most {MAX_LOAD:g}"
-        )
-
-
-def write_measurements(path: str, text: str) -> None:
-    """Write the page of measurements."""
-    with replacing(path) as file:
-        file.write(text)

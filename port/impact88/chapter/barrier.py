@@ -87,11 +87,11 @@ def barrier(
     --------
     >>> car = {"DA": 7.59, "GA": -30, "PA": -19.8, "TA": 0, "MA": 143.5, "IA": 3728}
     >>> car |= {"E": 0.1, "MU": 0.4, "EM": -1, "UX": -29, "UY": 0, "WA": 0}
-    >>> found = impact88.barrier(car)
-    >>> round(float(found["DVA"]), 2)
+    >>> results = impact88.barrier(car)
+    >>> round(float(results["DVA"]), 2)
     30.62
     """
     check_columns(columns, VEHICLE, "a barrier impact")
-    wanted = RESULTS if results is None else tuple(split_names(results))
-    check_names(wanted, RESULTS, "barrier result")
-    return solve({**BARRIER, **columns}, wanted)
+    names = RESULTS if results is None else tuple(split_names(results))
+    check_names(names, RESULTS, "barrier result")
+    return solve({**BARRIER, **columns}, names)

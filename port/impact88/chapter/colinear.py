@@ -116,11 +116,11 @@ def _results(
 ) -> dict[str, Array]:
     """Return all results of point masses with these velocities, n along x and t along y."""
     side = np.where(initial[0] > initial[2], -1.0, 1.0)
-    known: dict[str, Any] = {"M": 4.0, "MA": ma, "MB": mb, "E": e, "EM": 0.0, "MUP": mu}
-    known |= {"GA": np.where(side < 0, TURN, 0.0), "WA": 0.0, "WB": 0.0, "WAF": 0.0, "WBF": 0.0}
-    known |= dict(zip(("UX", "UY", "VX", "VY"), initial, strict=True))
-    known |= dict(zip(("VAX", "VAY", "VBX", "VBY"), final, strict=True))
-    results, _ = evaluate(known, RESULTS)
+    impact: dict[str, Any] = {"M": 4.0, "MA": ma, "MB": mb, "E": e, "EM": 0.0, "MUP": mu}
+    impact |= {"GA": np.where(side < 0, TURN, 0.0), "WA": 0.0, "WB": 0.0, "WAF": 0.0, "WBF": 0.0}
+    impact |= dict(zip(("UX", "UY", "VX", "VY"), initial, strict=True))
+    impact |= dict(zip(("VAX", "VAY", "VBX", "VBY"), final, strict=True))
+    results, _ = evaluate(impact, RESULTS)
     for name in ("PN", "PT"):
         results[name] = side * results[name]
     results["STATUS"] = np.nan_to_num(results["STATUS"]).astype(np.uint16)

@@ -141,15 +141,15 @@ def _equation_19(truth: dict[str, float], momentum: Step) -> tuple[Step, Step]:
     them with the values that the text states."""
 
     def changes(speeds: Sequence[float], loss: float, factor: float) -> list[float]:
-        given = {**TABLE_3, "SA": abs(speeds[0]), "SB": abs(speeds[1]), "LOSS": loss}
-        return [float(x) for x in delta_v(given, factor).values()]
+        impact = {**TABLE_3, "SA": abs(speeds[0]), "SB": abs(speeds[1]), "LOSS": loss}
+        return [float(x) for x in delta_v(impact, factor).values()]
 
     true = TABLE_3["UX"], TABLE_3["VY"]
-    found = momentum["UX"], momentum["VY"]
-    used = changes(true, truth["LOSS"], AS_USED)
+    by_momentum = momentum["UX"], momentum["VY"]
+    values = changes(true, truth["LOSS"], AS_USED)
     variants = (
         ("stated", "loss 40 % as stated, true speeds", changes(true, STATED_LOSS, AS_USED)),
-        ("analyst", "loss 40 %, speeds from momentum", changes(found, STATED_LOSS, AS_USED)),
+        ("analyst", "loss 40 %, speeds from momentum", changes(by_momentum, STATED_LOSS, AS_USED)),
         ("printed", "as printed, no 2/3", changes(true, truth["LOSS"], AS_PRINTED)),
     )
     alternatives = [
@@ -160,11 +160,11 @@ def _equation_19(truth: dict[str, float], momentum: Step) -> tuple[Step, Step]:
     estimate = Step(
         "Velocity changes without the impact equations",
         "Equation 19 with the factor 2/3",
-        (*_of_both("DVA DVB", "velocity change", used, "39.1 25.9"), *alternatives),
+        (*_of_both("DVA DVB", "velocity change", values, "39.1 25.9"), *alternatives),
         "The printed 39.1 and 25.9 need the factor 2/3 (which Equation 19 lacks as printed) and "
         "Table 3's own loss (ΔT = .374) and speeds; with the stated ΔT = 0.4 they would be larger.",
     )
-    a, b = (round(change, 1) for change in used)
+    a, b = (round(change, 1) for change in values)
     ux = initial_velocity(a, ESTIMATES["VAX"], ESTIMATES["VAY"])
     vy = initial_velocity(b, ESTIMATES["VBY"], ESTIMATES["VBX"])
     back = Step(
@@ -178,14 +178,14 @@ def _equation_19(truth: dict[str, float], momentum: Step) -> tuple[Step, Step]:
 
 def _coefficients(momentum: Step) -> Step:
     """Return the step that takes coefficients from all velocities by Equations 15, 16 and 18."""
-    known = {n: x for n, x in TABLE_3.items() if n not in ("E", "MU", "EM")}
-    known |= {**ESTIMATES, **SPINS, "UX": momentum["UX"], "VY": momentum["VY"]}
-    values, _ = evaluate(known, ("E", "MUP", "EM", "D1", "D2", "D3", "D4"))
+    motion = {n: x for n, x in TABLE_3.items() if n not in ("E", "MU", "EM")}
+    motion |= {**ESTIMATES, **SPINS, "UX": momentum["UX"], "VY": momentum["VY"]}
+    values, _ = evaluate(motion, ("E", "MUP", "EM", "D1", "D2", "D3", "D4"))
     v = {name: float(value) for name, value in values.items()}
-    x, y = known["VAX"] - known["UX"], known["VAY"] - known["UY"]
-    bx, by = known["VBX"] - known["VX"], known["VBY"] - known["VY"]
-    a_turns = known["IA"] * known["WAF"] - known["MA"] * (v["D3"] * x - v["D4"] * y)
-    b_turns = -known["IB"] * known["WBF"] + known["MB"] * (v["D2"] * by - v["D1"] * bx)
+    x, y = motion["VAX"] - motion["UX"], motion["VAY"] - motion["UY"]
+    bx, by = motion["VBX"] - motion["VX"], motion["VBY"] - motion["VY"]
+    a_turns = motion["IA"] * motion["WAF"] - motion["MA"] * (v["D3"] * x - v["D4"] * y)
+    b_turns = -motion["IB"] * motion["WBF"] + motion["MB"] * (v["D2"] * by - v["D1"] * bx)
     return Step(
         "Coefficients from both final spins, WAF -2.9 and WBF -0.9 rad/s",
         "Equations 15, 16 and 18",

@@ -113,13 +113,13 @@ def emendations() -> tuple[Emendation, ...]:
 @cache
 def collisions() -> tuple[Collision, ...]:
     """Return the eleven staged collisions in Table 1's order."""
-    table1 = {row["row"]: _named(row, COLUMNS_1) for row in _rows("table1.csv")}
+    table1 = {row["row"]: _cells(row, COLUMNS_1) for row in _rows("table1.csv")}
     table2 = {row["collision"]: row for row in _rows("table2.csv")}
     numbers = dict.fromkeys(row.partition("/")[0] for row in table1)
     return tuple(_collision(number, table1, table2[number]) for number in numbers)
 
 
-def _named(row: Mapping[str, str], columns: tuple[str, ...]) -> dict[str, str]:
+def _cells(row: Mapping[str, str], columns: tuple[str, ...]) -> dict[str, str]:
     return {column: row[FIELDS.get(column, column)] for column in columns}
 
 
@@ -127,19 +127,19 @@ def _collision(
     number: str, table1: Mapping[str, Mapping[str, str]], row: Mapping[str, str]
 ) -> Collision:
     scene = {"GA": float(table1[f"{number}/A"]["Gamma"]), "WA": 0.0, "WB": 0.0}
-    measured: dict[str, float] = {}
+    final: dict[str, float] = {}
     for v, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
         cells = table1[f"{number}/{v}"]
         names = {"M": "m", "I": "I", "D": "d", "P": "phi", "T": "theta"}
         scene |= {f"{name}{v}": float(cells[column]) for name, column in names.items()}
         scene |= {x: float(cells["vx"]), y: float(cells["vy"])}
         after = {f"V{v}X": "Vx", f"V{v}Y": "Vy", f"W{v}F": "Omega"}
-        measured |= {name: float(cells[column] or "nan") for name, column in after.items()}
-    printed = _named(row, ("e", "em", "mu", *COLUMNS_2))
+        final |= {name: float(cells[column] or "nan") for name, column in after.items()}
+    texts = _cells(row, ("e", "em", "mu", *COLUMNS_2))
     slips = {e.column: e.printed for e in emendations() if (e.table, e.row) == (2, number)}
-    numbers = {name: float(slips.get(name) or text) for name, text in printed.items()}
+    numbers = {name: float(slips.get(name) or text) for name, text in texts.items()}
     category = table1[f"{number}/A"]["category"]
-    return Collision(int(number), category, scene, measured, numbers)
+    return Collision(int(number), category, scene, final, numbers)
 
 
 def forward(collision: Collision, coefficients: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -152,8 +152,7 @@ def forward(collision: Collision, coefficients: Mapping[str, Any] | None = None)
     coefficients : mapping of str to float or array_like, optional
         E, EM and MUP.
     """
-    known = {**collision.scene, **(coefficients or collision.coefficients)}
-    impacts = complete(known).values
+    impacts = complete({**collision.scene, **(coefficients or collision.coefficients)}).values
     return impacts | evaluate(impacts, ("LOSS", "DVA", "DVB", "KI", "KF", "MUC"))[0]
 
 
@@ -163,7 +162,7 @@ def experimental(collision: Collision) -> dict[str, float]:
     return {name: float(value) for name, value in changes.items()}
 
 
-def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
+def prediction(collision: Collision, loss: Any = None) -> dict[str, Array]:
     """Return DVA and DVB by Equation 19 from the energy loss in percent, by default Table 2's."""
     speeds, _ = evaluate(collision.scene, ("SA", "SB"))
     loss = collision.table2["loss"] if loss is None else loss
@@ -176,17 +175,16 @@ def closure(collision: Collision) -> dict[str, float]:
     ``x_of_a`` and minus that of B, ``x_of_b``, are equal where momentum is conserved, and so on
     along y and for the moment impulse at the contact point (Equation 17). NaN where a velocity is
     lost."""
-    known = collision.scene | collision.measured
-    ma, mb = known["MA"], known["MB"]
-    v, _ = evaluate(known, ("LOSS", "D1", "D2", "D3", "D4"))
-    ax, ay = known["VAX"] - known["UX"], known["VAY"] - known["UY"]
-    bx, by = known["VBX"] - known["VX"], known["VBY"] - known["VY"]
-    turn_a = known["IA"] * (known["WAF"] - known["WA"])
-    turn_b = known["IB"] * (known["WBF"] - known["WB"])
-    energies, _ = evaluate(known, ("KI", "KF"))
+    impact = collision.scene | collision.measured
+    ma, mb = impact["MA"], impact["MB"]
+    v, _ = evaluate(impact, ("LOSS", "D1", "D2", "D3", "D4"))
+    ax, ay = impact["VAX"] - impact["UX"], impact["VAY"] - impact["UY"]
+    bx, by = impact["VBX"] - impact["VX"], impact["VBY"] - impact["VY"]
+    turn_a = impact["IA"] * (impact["WAF"] - impact["WA"])
+    turn_b = impact["IB"] * (impact["WBF"] - impact["WB"])
     return {
         "number": collision.number,
-        "loss": float(100.0 * (energies["KI"] - energies["KF"]) / energies["KI"]),
+        "loss": float(v["LOSS"]),
         "x_of_a": ma * ax,
         "x_of_b": -mb * bx,
         "y_of_a": ma * ay,
@@ -203,29 +201,29 @@ def comparison() -> list[Compared]:
     half = HALF_COEFFICIENT
     offsets = np.array([*product((0.0, -half, half), repeat=3)]).T
     for collision in collisions():
-        named = zip(collision.coefficients.items(), offsets, strict=True)
-        around = forward(collision, {name: x + offset for (name, x), offset in named})
-        measured = experimental(collision)
+        pairs = zip(collision.coefficients.items(), offsets, strict=True)
+        around = forward(collision, {name: x + offset for (name, x), offset in pairs})
+        changes = experimental(collision)
         losses = collision.table2["loss"] + np.array([0.0, -HALF_DIGIT, HALF_DIGIT])
-        equation_19 = predicted(collision, losses)
+        equation_19 = prediction(collision, losses)
         values = {"loss": around["LOSS"]}
         for vehicle, name in (("a", "DVA"), ("b", "DVB")):
-            values[f"dV{vehicle}_exp"] = np.array([measured[name]])
+            values[f"dV{vehicle}_exp"] = np.array([changes[name]])
             values[f"dV{vehicle}_comp"] = around[name]
             values[f"dV{vehicle}_pred"] = equation_19[name]
-        rows += [_compared(collision, column, values[column]) for column in COLUMNS_2]
+        rows += [_recomputation(collision, column, values[column]) for column in COLUMNS_2]
     return rows
 
 
-def _compared(collision: Collision, column: str, values: Array) -> Compared:
+def _recomputation(collision: Collision, column: str, values: Array) -> Compared:
     """Return one cell beside ``values``: at the printed inputs first, then around them."""
-    printed = collision.table2[column]
+    cell = collision.table2[column]
     low, high = float(np.min(values)), float(np.max(values))
     tolerance = HALF_DIGIT + ROUNDING
-    agrees = low - tolerance <= printed <= high + tolerance
+    agrees = low - tolerance <= cell <= high + tolerance
     key = (2, str(collision.number), column)
     evidence = {(e.table, e.row, e.column): e.evidence for e in emendations()}.get(key)
     explanation = "" if agrees else evidence or "not explained"
     return Compared(
-        collision.number, column, printed, float(values[0]), low, high, bool(agrees), explanation
+        collision.number, column, cell, float(values[0]), low, high, bool(agrees), explanation
     )

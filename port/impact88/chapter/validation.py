@@ -72,11 +72,11 @@ def scenes() -> dict[str, dict[str, float]]:
     return oblique | {f"{IIHS} {row['test']}": iihs_scene(row) for row in _rows(IIHS)}
 
 
-def medians(found: Sequence[Check]) -> list[tuple[str, str, str, str, int, float, float]]:
+def medians(checks: Sequence[Check]) -> list[tuple[str, str, str, str, int, float, float]]:
     """Return source, quantity, unit, kind, count, and the median and the largest size of the
     differences, for each source and quantity."""
     groups: dict[tuple[str, str, str, str], list[float]] = {}
-    for check in found:
+    for check in checks:
         group = check.source, check.quantity, check.unit, check.kind
         groups.setdefault(group, []).append(abs(check.difference))
     return [(*group, len(sizes), median(sizes), max(sizes)) for group, sizes in groups.items()]
@@ -117,7 +117,7 @@ def nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
 
 
 def _nhtsa() -> list[Check]:
-    found = []
+    checks = []
     for row in _rows(NHTSA):
         result = solve(nhtsa_scene(row), ("MUC", "WAF", "DVA", "WBF", "DVB"))
         v = {name: float(value) for name, value in result.items()}
@@ -128,10 +128,10 @@ def _nhtsa() -> list[Check]:
             ("change of spin, B", "°/s", "delta_omega2_deg_s", abs(degrees(v["WBF"]))),
             ("ΔV, B", "mph", "delta_v2_mph", v["DVB"] / MPH),
         )
-        for quantity, unit, column, computed in numbers:
-            reported = float(row[column])
-            found.append(Check(NHTSA, row["test"], quantity, unit, PUBLISHED, reported, computed))
-    return found
+        for quantity, unit, column, value in numbers:
+            report = float(row[column])
+            checks.append(Check(NHTSA, row["test"], quantity, unit, PUBLISHED, report, value))
+    return checks
 
 
 def iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
@@ -153,12 +153,12 @@ def iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
     }
     critical = evaluate({**BARRIER, **scene}, ("MUC",))[0]["MUC"]
     friction = float(critical) * float(row["mu_percent"]) / 100
-    known = {n: x for n, x in {**BARRIER, **scene, "MUP": friction}.items() if n != "MU"}
-    return scene | {"MU": float(evaluate(known, ("MU",))[0]["MU"])}
+    impact = {n: x for n, x in {**BARRIER, **scene, "MUP": friction}.items() if n != "MU"}
+    return scene | {"MU": float(evaluate(impact, ("MU",))[0]["MU"])}
 
 
 def _iihs() -> list[Check]:
-    found = []
+    checks = []
     for row in _rows(IIHS):
         scene = iihs_scene(row)
         v = {n: float(x) for n, x in barrier(scene, ("VAX", "VAY", "WAF")).items()}
@@ -167,7 +167,7 @@ def _iihs() -> list[Check]:
             ("ΔV across it", "ft/s", "delta_vy_ft_s", v["VAY"]),
             ("change of spin", "°/s", "delta_omega_deg_s", abs(degrees(v["WAF"]))),
         )
-        for quantity, unit, column, computed in numbers:
-            reported = float(row[column])
-            found.append(Check(IIHS, row["test"], quantity, unit, MEASURED, reported, computed))
-    return found
+        for quantity, unit, column, value in numbers:
+            report = float(row[column])
+            checks.append(Check(IIHS, row["test"], quantity, unit, MEASURED, report, value))
+    return checks

@@ -1,6 +1,6 @@
 """impact88 bench                          errors and run times of five methods, two minutes
 impact88 bench --quick                  fewer scenes, fewer repeats
-impact88 bench --measurements FILE.md   the same as a page; on a quiet computer only
+impact88 bench -o FILE.md               into a file: times count on a quiet computer only
 impact88 bench --json
 
 The listing in double precision, its equations by LAPACK, the Apple's own arithmetic, and solve by
@@ -10,16 +10,11 @@ those of the final velocities against 50 digits (needs pip install 'impact88[ora
 from __future__ import annotations
 
 from ..errors import library
-from .options import JSON, OUTPUT, Args, flag, output_file
+from .options import JSON, OUTPUT, Args, flag
 from .output import progress, show
 
 QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT = 100, 3, 0.05
-OPTIONS = (
-    flag("--quick", "fewer scenes and repeats"),
-    output_file("--measurements", "FILE", "write a Markdown page, if the computer is quiet"),
-    JSON,
-    OUTPUT,
-)
+OPTIONS = (flag("--quick", "fewer scenes and repeats"), JSON, OUTPUT)
 
 
 def main(args: Args) -> None:
@@ -28,8 +23,6 @@ def main(args: Args) -> None:
     from ..bench import benchmark as bench
 
     where = bench.computer()
-    if args.measurements:
-        bench.check_quiet(where)
     scenes, repeats, effort = bench.ERROR_SCENES, bench.REPEATS, 1.0
     if args.quick:
         scenes, repeats, effort = QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT
@@ -43,7 +36,5 @@ def main(args: Args) -> None:
 
         rows = bench.measure(step, scenes, repeats, effort)
     page = bench.markdown(rows, where)
-    if args.measurements:
-        bench.write_measurements(args.measurements, page)
     record = {"computer": where, "measurements": [row._asdict() for row in rows]}
     show(args.json, "bench", record, [page])

@@ -92,17 +92,15 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
     s, c, an, at, bn, bt, ma, mb, ia, ib = (geometry[name] for name in GEOMETRY)
     # relative velocities along n and t, and of the spins, by unit velocities
-    relative = _stacked(
-        [[c, s, an, -c, -s, bn], [-s, c, at, s, -c, bt], [0, 0, 1, 0, 0, -1]], shape
-    )
+    relative = _stack([[c, s, an, -c, -s, bn], [-s, c, at, s, -c, bt], [0, 0, 1, 0, 0, -1]], shape)
     # changes of velocities by unit impulses
-    changes = relative * _stacked([[ma, ma, ia, mb, mb, ib]], shape)
+    changes = relative * _stack([[ma, ma, ia, mb, mb, ib]], shape)
     late = np.array([early not in known for early in VELOCITIES])
     full, delayed = _products(relative, changes), _products(relative[:, late], changes[:, late])
-    given = _stacked(
+    velocities_known = _stack(
         [[known[b if is_late else a] for (a, b), is_late in zip(pairs, late, strict=True)]], shape
     )
-    rows, right = _laws(known, _products(relative, given)[:, 0], full - delayed, delayed)
+    rows, right = _laws(known, _products(relative, velocities_known)[:, 0], full - delayed, delayed)
     crosses = [_cross(rows[k - 2], rows[k - 1]) for k in range(3)]
     determinant = _dot(rows[0], crosses[0])
     impulse = [_dot(right, column) / determinant for column in zip(*crosses, strict=True)]
@@ -112,9 +110,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
             values[before] = known[after] - change
         else:
             values[after] = known[before] + change
-    velocities = _stacked(
-        [[values[x] for x in VELOCITIES], [values[x] for x in FINAL_STATE]], shape
-    )
+    velocities = _stack([[values[x] for x in VELOCITIES], [values[x] for x in FINAL_STATE]], shape)
     g, separation = np.moveaxis(_products(relative, velocities), 1, 0)
     twist = separation[2] + impulse[2] * full[2, 2]
     quotients = ((-separation[0], g[0]), (impulse[1], impulse[0]), (separation[2], twist))
@@ -129,7 +125,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     return Completed(values, volume + np.log(np.abs(_dot(a, _cross(b, c)))))
 
 
-def _stacked(rows: Sequence[Sequence[ArrayLike]], shape: tuple[int, ...]) -> Floats:
+def _stack(rows: Sequence[Sequence[ArrayLike]], shape: tuple[int, ...]) -> Floats:
     """Return rows of numbers and arrays as one array, with the shape of the impacts behind."""
     stack = np.empty((len(rows), len(rows[0]), *shape))
     for k, row in enumerate(rows):

@@ -27,7 +27,11 @@ STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the 
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
 PROCESSORS = os.cpu_count() or 1
 NOT_FINITE = 64.0
-FINITE, ANY_SIZE, BITS, RAW = range(4)  # kinds of results in `machine.c`
+# kinds of results in `machine.c`
+FINITE = 0
+ANY_SIZE = 1
+BITS = 2  # STATUS
+RAW = 3  # as computed
 KINDS = {"STATUS": BITS, "COND": ANY_SIZE}  # of checked results; the others are finite
 NUMBERS = {name: number for number, name in enumerate(COMPILED)}  # of loops in the library
 _address_of, _buffer_of = ctypes.addressof, ctypes.c_char.from_buffer
@@ -35,11 +39,11 @@ _address_of, _buffer_of = ctypes.addressof, ctypes.c_char.from_buffer
 
 def _load() -> Any:
     """Return the library with its functions declared, None where there is none."""
-    compiled = library.loaded("mechanics_formulas", digest())
-    if compiled is not None:
+    part = library.loaded("mechanics_formulas", digest())
+    if part is not None:
         number, pointer = ctypes.c_int64, ctypes.c_void_p
-        compiled.solve.argtypes, compiled.solve.restype = [pointer, pointer, number, number], None
-    return compiled
+        part.solve.argtypes, part.solve.restype = [pointer, pointer, number, number], None
+    return part
 
 
 _compiled = _load()
@@ -115,7 +119,7 @@ class Kernel:
         if out is None:
             results, starts = self.new_arrays(shape)
         else:
-            results, starts = self._checked(out, shape, places)
+            results, starts = self._check_output(out, shape, places)
         count = math.prod(shape)
         if self.is_compiled:
             numbers = np.array([inputs[name] for name in self.fixed])
@@ -128,12 +132,12 @@ class Kernel:
             values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
             run_formulas(self._steps, values)
             for to, name, kind in zip(flat, self.wanted, self._kinds, strict=True):
-                to[part] = finished(values, name, kind)
+                to[part] = output(values, name, kind)
         return results
 
     @property
     def is_compiled(self) -> bool:
-        """Whether the compiled library computes it."""
+        """True if the compiled library computes it."""
         return _compiled is not None and not library.is_switched_off()
 
     def run_at(
@@ -158,7 +162,7 @@ class Kernel:
             (starts[self._kinds.index(BITS)],) = addresses([bits])
         return arrays, starts
 
-    def _checked(
+    def _check_output(
         self, out: Mapping[str, Array], shape: tuple[int, ...], inputs: Sequence[int]
     ) -> tuple[dict[str, Array], list[int]]:
         """Return the arrays to write results into, and their addresses. Raises UserError for arrays
@@ -168,8 +172,8 @@ class Kernel:
             dtype: type = np.uint16 if kind == BITS else np.float64
             is_array = isinstance(array, np.ndarray) and array.flags.carray
             if not is_array or array.shape != shape or array.dtype != dtype:
-                expected = f"a contiguous array of {dtype.__name__} of shape {shape}"
-                raise UserError(f"out, {name}: expected {expected}")
+                form = f"a contiguous array of {dtype.__name__} of shape {shape}"
+                raise UserError(f"out, {name}: expected {form}")
         results = {name: out[name] for name in self.wanted}
         starts = addresses(list(results.values()))
         spans = [(at, at + x.nbytes, 1) for at, x in zip(starts, results.values(), strict=True)]
@@ -187,15 +191,15 @@ def run_formulas(steps: Sequence[tuple[str, int]], values: dict[str, Any]) -> No
     for name, guard in steps:
         formula = FORMULAS[name]
         if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
-            computed = [np.float64(1.0)] * len(formula.gives)  # not used
+            quantities = [np.float64(1.0)] * len(formula.gives)  # not used
         else:
             function = getattr(formulas if name in COMPILED else consequences, name)
-            computed = function(*[values[operand] for operand in formula.takes])
-        for quantity, array in zip(formula.gives, computed, strict=True):
+            quantities = function(*[values[operand] for operand in formula.takes])
+        for quantity, array in zip(formula.gives, quantities, strict=True):
             values.setdefault(quantity, array)
 
 
-def finished(values: Mapping[str, Any], name: str, kind: int) -> Any:
+def output(values: Mapping[str, Any], name: str, kind: int) -> Any:
     """Return a result as the library writes it."""
     x = values[name]
     if kind == RAW:

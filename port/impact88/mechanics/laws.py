@@ -1,4 +1,4 @@
-"""What is impossible: the conditions that every impact obeys.
+"""The conditions that every impact obeys: laws and limits of physics.
 
 The contact points approach, the normal impulse pushes, no kinetic energy is gained, E lies from 0
 to 1 and EM from -1 to 0 (+1 stands for no moment impulse), and friction does no more than end the
@@ -89,9 +89,9 @@ def margins(
     is_point = (np.asarray(known.get("M", 6.0)) == POINT).all()
     if {"waf", "PM", "ia"} <= v.keys() and not is_point:
         spin = (v["waf"] - v["wbf"]) * (length / speed)
-        whole = spin + v["PM"] * (v["ia"] + v["ib"]) * (length / speed)
-        sign = np.where(whole < 0.0, -1.0, 1.0)
-        rows["EM"] = (sign * (spin - EM_MIN * whole), sign * (EM_MAX * whole - spin))
+        total = spin + v["PM"] * (v["ia"] + v["ib"]) * (length / speed)
+        sign = np.where(total < 0.0, -1.0, 1.0)
+        rows["EM"] = (sign * (spin - EM_MIN * total), sign * (EM_MAX * total - spin))
     if {"PN", "PT", "MUC"} <= v.keys():
         low, high = friction_range(v["MUC"])
         pn, pt = v["PN"] / (mass * speed), v["PT"] / (mass * speed)

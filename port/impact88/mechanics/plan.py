@@ -17,7 +17,8 @@ COLUMNS = tuple(SCENE)
 HELPERS = ("sine_and_cosine",)
 """Functions of `formulas` that formulas call, and that are no formulas."""
 
-PIVOTS, OTHERS = 1, 2
+PIVOTS = 1  # guard of a formula that only pivots need
+OTHERS = 2  # of one that only the other scenes need
 GUARDS = {
     "pivot_impulse": PIVOTS,
     "pivot_spins": PIVOTS,
@@ -49,7 +50,7 @@ class Formula(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """What has to be computed for some quantities.
+    """The computation of some quantities.
 
     Parameters
     ----------
@@ -128,18 +129,18 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     """
     sources = _sources(known)
     missing = {x: _lacking(x, known) for x in wanted if x not in known and x not in sources}
-    needed = {x for x in wanted if x in sources}
+    quantities = {x for x in wanted if x in sources}
     inputs: set[str] = set()
     steps: list[tuple[str, int]] = []
     for name in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
         formula = FORMULAS[name]
-        gives = {x for x in needed.intersection(formula.gives) if sources.get(x) == name}
+        gives = {x for x in quantities.intersection(formula.gives) if sources.get(x) == name}
         if gives:
             users = {step for step, _ in steps if not gives.isdisjoint(FORMULAS[step].takes)}
             is_guarded = users <= GUARDED_USERS and gives.isdisjoint(wanted) and "MU" in known
             steps.append((name, GUARDS.get(name, 0) if is_guarded else 0))
             inputs |= known.intersection(formula.takes)
-            needed.update(formula.takes)
+            quantities.update(formula.takes)
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 

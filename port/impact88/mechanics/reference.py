@@ -164,11 +164,11 @@ def _results(g: dict[str, Number]) -> dict[str, Number]:
         _total(v, *(x * p for x, p in zip(column, P, strict=True)))
         for v, column in zip(before, zip(*changes, strict=True), strict=True)
     ]
-    both = [_total(u, v) for u, v in zip(before, after, strict=True)]
-    works = [-p * _dot(row, both) / 2 for p, row in zip(P, relative, strict=True)]
+    sums = [_total(u, v) for u, v in zip(before, after, strict=True)]
+    works = [-p * _dot(row, sums) / 2 for p, row in zip(P, relative, strict=True)]
     lost, size = _total(*works), mpmath.hypot(P[0], P[1])
     ma, mb = 1 / g["MA"], 1 / g["MB"]
-    shared = max(lost, 0) * (1 if ma and mb else 2)
+    part = max(lost, 0) * (1 if ma and mb else 2)
     f: dict[str, Number] = dict(zip(FINAL_STATE, after, strict=True))
     f |= dict(zip(("ELN", "ELT", "ELM"), works, strict=True))
     f |= dict(zip(("PN", "PT", "PM"), P, strict=True))
@@ -186,8 +186,8 @@ def _results(g: dict[str, Number]) -> dict[str, Number]:
     # one line a result
     f["VC"] = -gn
     f["VS"] = -e * gn
-    f["EESA"] = mpmath.sqrt(shared * ma)
-    f["EESB"] = mpmath.sqrt(shared * mb)
+    f["EESA"] = mpmath.sqrt(part * ma)
+    f["EESB"] = mpmath.sqrt(part * mb)
     f["DVA"] = ma * size
     f["DVB"] = mb * size
     f["MUP"] = mu

@@ -268,7 +268,7 @@ class Prepared:
         try:
             block = np.asarray(values, np.float64)
         except (TypeError, ValueError):
-            block = self._mixed(values)
+            block = self._broadcast_rows(values)
         if len(block) != len(self.names):
             raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
         if not block.flags.carray:
@@ -285,7 +285,7 @@ class Prepared:
             arrays = self._kernel.compute(self._scene | rows, shape)
         return arrays if shape else _numbers(arrays)
 
-    def _mixed(self, values: Any) -> Array:
+    def _broadcast_rows(self, values: Any) -> Array:
         """Return numbers, arrays and texts as rows of one shape. Raises UserError."""
         rows = zip(self.names, values, strict=False)
         columns = {name: _as_doubles(name, value) for name, value in rows}
@@ -350,23 +350,23 @@ def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str,
         if names is None:
             kind = type(columns).__name__
             raise UserError(f"a {kind} has no columns; expected a mapping or a data frame")
-    given = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
-    _complete_points(given)
-    if len(given) < len(needed):
+    numbers = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
+    _complete_points(numbers)
+    if len(numbers) < len(needed):
         for name, value in needed.items():
             if value is not None:
-                given.setdefault(name, value)
-        if lacking := [name for name in needed if name not in given]:
+                numbers.setdefault(name, value)
+        if lacking := [name for name in needed if name not in numbers]:
             raise UserError(missing(lacking))
-    return given
+    return numbers
 
 
-def _complete_points(given: dict[str, Any]) -> None:
+def _complete_points(numbers: dict[str, Any]) -> None:
     """Add M where it is not given, and NaN for what point masses do not use."""
-    m = given.setdefault("M", BODIES)
+    m = numbers.setdefault("M", BODIES)
     if m is not BODIES and np.all(m == POINT):
         for name in UNUSED_BY_POINTS:
-            given.setdefault(name, math.nan)
+            numbers.setdefault(name, math.nan)
 
 
 def _as_doubles(name: str, value: Any) -> Any:
@@ -375,8 +375,8 @@ def _as_doubles(name: str, value: Any) -> Any:
     if kind is float or (kind is np.ndarray and value.dtype == np.float64):
         return value
     if isinstance(value, np.ma.MaskedArray):
-        numbers: Any = value.astype(np.float64)
-        value = numbers.filled(np.nan)
+        floats: Any = value.astype(np.float64)
+        value = floats.filled(np.nan)
     try:
         array = np.asarray(value)
     except ValueError:
@@ -394,23 +394,23 @@ def _number(name: str, at: int, cell: Any) -> float:
             return math.nan
         if isinstance(cell, str):
             return to_double(cell)
-        if not isinstance(cell, complex):
+        if not np.iscomplexobj(cell):
             return float(cell)
     except (TypeError, ValueError):
         pass
     raise UserError(f"{name} = {quoted(cell)} at position {at} is no number; expected a number")
 
 
-def _flatten(given: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any], frozenset[str]]:
+def _flatten(numbers: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any], frozenset[str]]:
     """Return the shape that columns broadcast to, the columns flat, those of one number as a
     number, and the names of the others. Raises UserError where they do not broadcast."""
-    arrays = {name: x for name, x in given.items() if type(x) is not float}
+    arrays = {name: x for name, x in numbers.items() if type(x) is not float}
     try:
         shape = np.broadcast_shapes(*{array.shape for array in arrays.values()})
     except ValueError:
         sizes = ", ".join(f"{n} {x.shape}" for n, x in arrays.items() if x.shape)
         raise UserError(f"columns do not broadcast together: {sizes}") from None
-    flat = dict(given)
+    flat = dict(numbers)
     varying = []
     for name, array in arrays.items():
         if array.size == 1:

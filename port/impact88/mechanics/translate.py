@@ -12,26 +12,26 @@ import hashlib
 from .plan import COLUMNS, COMPILED, FUNCTIONS, ROWS, SOURCE, Formula
 
 
-def assignment(name: str, value: ast.expr, declared: set[str]) -> str:
+def assignment(name: str, value: ast.expr, variables: set[str]) -> str:
     """Return the assignment of a value in C, with a type where the name is new."""
     operator = getattr(value, "op", value)
     is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
-    kind = "" if name in declared else "int64_t " if is_condition else "double "
-    declared.add(name)
+    kind = "" if name in variables else "int64_t " if is_condition else "double "
+    variables.add(name)
     return f"{kind}{name} = {ast.unparse(value)};"
 
 
 def statements(formula: Formula) -> list[str]:
     """Return a function's assignments in C; a name that is assigned again keeps its variable."""
     lines: list[str] = []
-    declared = set(formula.takes)
+    variables = set(formula.takes)
     for line in formula.tree.body:
         match line:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                lines.append(assignment(name, value, declared))
+                lines.append(assignment(name, value, variables))
             case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Tuple(elts=values)):
                 for target, value in zip(targets, values, strict=True):
-                    lines.append(assignment(ast.unparse(target), value, declared))
+                    lines.append(assignment(ast.unparse(target), value, variables))
             case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Call() as call):
                 names = [ast.unparse(target) for target in targets]
                 places = ", ".join(f"&{name}" for name in names)
