@@ -63,7 +63,7 @@ def losses() -> str:
 def errors_of_equation_19() -> str:
     """Median and largest difference of Equation 19 from the fitted delta-V."""
     errors = [
-        abs(value(staged.predicted(collision), name) - value(staged.forward(collision), name))
+        abs(value(staged.prediction(collision), name) - value(staged.forward(collision), name))
         for collision in COLLISIONS
         for name in VELOCITY_CHANGES
     ]
