@@ -41,25 +41,25 @@ def head_ons(count, seed, straight, central=False):
     return scene
 
 
-def staged(collision):
+def staged_scene(collision):
     """Return a staged collision's scene with Table 2's coefficients, MU as typed."""
     scene = {**collision.scene, **collision.coefficients}
     scene["MU"] = scene.pop("MUP")
-    flipped = solve(scene, "MUP")["MUP"] != scene["MU"]
-    return {**scene, "MU": -scene["MU"]} if flipped else scene
+    is_reversed = solve(scene, "MUP")["MUP"] != scene["MU"]
+    return {**scene, "MU": -scene["MU"]} if is_reversed else scene
 
 
 class TestFriction:
     """Friction that cannot make the impact, by Routh's process."""
 
     def test_the_eleven_collisions(self):
-        found = {c.number: Status(int(solve(staged(c))["STATUS"])) for c in collisions()}
-        assert {number for number, x in found.items() if not x & FRICTION} == {1, 4, 5, 6, 7}
-        assert not any(x & SIDES for x in found.values())
+        statuses = {c.number: Status(int(solve(staged_scene(c))["STATUS"])) for c in collisions()}
+        assert {number for number, x in statuses.items() if not x & FRICTION} == {1, 4, 5, 6, 7}
+        assert not any(x & SIDES for x in statuses.values())
         for collision in collisions():
             scene = {**collision.scene, **collision.coefficients}
             is_possible = judged(scene, scene["MUP"])[1]
-            assert is_possible == (not found[collision.number] & FRICTION)
+            assert is_possible == (not statuses[collision.number] & FRICTION)
 
     @pytest.mark.parametrize(
         ("straight", "central", "part"),
@@ -69,11 +69,11 @@ class TestFriction:
         scene = head_ons(4000, 5, straight, central)
         results = solve(scene, ("STATUS", "MUP"))
         approaching, possible = judged(scene, results["MUP"])
-        reported = (results["STATUS"] & np.uint16(FRICTION)) != 0
+        has_bit = (results["STATUS"] & np.uint16(FRICTION)) != 0
         assert possible[approaching].mean() == pytest.approx(part, abs=0.03)
-        assert not (possible & reported & approaching).any()
-        assert not (~possible & ~reported & approaching).any()
-        assert not reported[~approaching].any()
+        assert not (possible & has_bit & approaching).any()
+        assert not (~possible & ~has_bit & approaching).any()
+        assert not has_bit[~approaching].any()
 
     @pytest.mark.parametrize("population", POPULATIONS)
     def test_no_friction_and_the_pivot_are_no_fault(self, population):
@@ -86,14 +86,14 @@ class TestFriction:
         scene = sample(number).numbers()
         critical = float(solve(scene, "MUC")["MUC"])
         sign = float(np.sign(solve({**scene, "MU": 1.0}, "MUP")["MUP"]))
-        for signed, expected in (
+        for friction_at, bit in (
             (critical + 5e-10, 0),
             (critical + 2e-9, Status.FRICTION_ABOVE_CRITICAL),
             (-5e-10, 0),
             (-2e-9, Status.FRICTION_WRONG_DIRECTION),
         ):
-            assert friction({**scene, "MU": sign * signed}) == expected
-            assert bool(expected) != judged(scene, signed)[1]
+            assert friction({**scene, "MU": sign * friction_at}) == bit
+            assert bool(bit) != judged(scene, friction_at)[1]
 
     def test_no_slip_and_no_friction_are_no_fault(self):
         head_on = {"GA": 0.0, "UY": 0.0, "VX": 14.0, "VY": 0.0, "DA": 0.0, "DB": 0.0}
@@ -159,18 +159,18 @@ class TestRangesAndEnergies:
 
     def test_numbers_keep_their_meaning(self):
         """Results that earlier versions wrote are read by their numbers."""
-        kept = {"SEPARATING": 1, "PULLING": 2, "ENERGY_GAINED": 8, "E_OUT_OF_RANGE": 16}
-        kept |= {"SINGULAR": 32, "NOT_FINITE": 64, "A_ON_WRONG_SIDE": 256, "B_ON_WRONG_SIDE": 512}
-        kept |= {"EM_OUT_OF_RANGE": 1024, "MU_OUT_OF_RANGE": 2048}
-        kept |= {"FRICTION_ABOVE_CRITICAL": 4096, "FRICTION_WRONG_DIRECTION": 8192}
-        assert {bit.name: int(bit) for bit in Status} == kept
-        assert not set(status.RETIRED) & set(kept.values())
+        values = {"SEPARATING": 1, "PULLING": 2, "ENERGY_GAINED": 8, "E_OUT_OF_RANGE": 16}
+        values |= {"SINGULAR": 32, "NOT_FINITE": 64, "A_ON_WRONG_SIDE": 256, "B_ON_WRONG_SIDE": 512}
+        values |= {"EM_OUT_OF_RANGE": 1024, "MU_OUT_OF_RANGE": 2048}
+        values |= {"FRICTION_ABOVE_CRITICAL": 4096, "FRICTION_WRONG_DIRECTION": 8192}
+        assert {bit.name: int(bit) for bit in Status} == values
+        assert not set(status.RETIRED) & set(values.values())
         assert all(status.WORDS[bit] for bit in Status)
 
     def test_singular_from_a_condition_of_2_26(self):
         """Friction next to what makes the determinant 0."""
         g = scenes("singular", 300, 2)
         results = solve(g, ("COND", "STATUS"))
-        reported = (results["STATUS"] & np.uint16(Status.SINGULAR)) != 0
-        np.testing.assert_array_equal(reported, results["COND"] >= 2.0**26)
-        assert 50 < reported.sum() < 250
+        has_bit = (results["STATUS"] & np.uint16(Status.SINGULAR)) != 0
+        np.testing.assert_array_equal(has_bit, results["COND"] >= 2.0**26)
+        assert 50 < has_bit.sum() < 250

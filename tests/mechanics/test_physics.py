@@ -17,13 +17,13 @@ STILL = {"VX": 0.0, "VY": 0.0, "WB": 0.0}
 @pytest.mark.parametrize("case", FORWARD, ids=[case["name"] for case in FORWARD])
 def test_worked_case(case):
     result = case["result"]
-    expected = dict(zip(FINAL_VELOCITIES, result["final"].values(), strict=True))
-    expected |= {name + "F": text for name, text in result["contact_final"].items()}
+    reference = dict(zip(FINAL_VELOCITIES, result["final"].values(), strict=True))
+    reference |= {name + "F": text for name, text in result["contact_final"].items()}
     impulses = result["impulses"]
-    expected |= {"PN": impulses["Pn"], "PT": impulses["Pt"], "PM": impulses["M"]}
-    expected |= {"KI": result["KE_initial"], "LOSS": result["KE_loss_percent"]}
+    reference |= {"PN": impulses["Pn"], "PT": impulses["Pt"], "PM": impulses["M"]}
+    reference |= {"KI": result["KE_initial"], "LOSS": result["KE_loss_percent"]}
     results = solve(scene_of(case))
-    for name, text in expected.items():
+    for name, text in reference.items():
         assert results[name] == pytest.approx(float(text), rel=1e-12, abs=1e-300), name
     mu = result["mu_used"]
     assert results["MUP"] == (-10 if mu is None else float(mu))
@@ -45,9 +45,9 @@ def test_defining_equations():
     np.testing.assert_allclose(after, -g["E"] * gn, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose((r["VC"], r["VS"]), (-gn, after), rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(r["PT"], r["MUP"] * r["PN"], rtol=1e-12, atol=1e-9)
-    reduced = g["IA"] * g["IB"] / (g["IA"] + g["IB"])
+    mean_mass = g["IA"] * g["IB"] / (g["IA"] + g["IB"])
     turning = (1 - g["EM"]) * (r["WBF"] - r["WAF"])
-    np.testing.assert_allclose(turning, -g["EM"] * r["PM"] / reduced, rtol=1e-8, atol=1e-9)
+    np.testing.assert_allclose(turning, -g["EM"] * r["PM"] / mean_mass, rtol=1e-8, atol=1e-9)
     pivot = solve({**g, "MU": -10.0})
     slip = (pivot["YAF"] - pivot["YBF"]) * c - (pivot["XAF"] - pivot["XBF"]) * s
     np.testing.assert_allclose(slip, 0, atol=1e-9)
@@ -70,8 +70,8 @@ def test_the_energies_lost_are_the_work_of_each_impulse(name):
         "ELM": -r["PM"] * spins / 2,
     }
     size = r["KI"] + (np.abs(r["PN"]) + np.abs(r["PT"])) * np.hypot(x, y)
-    for loss, expected in work.items():
-        assert np.all(np.abs(r[loss] - expected) <= 1e-8 * size), loss
+    for loss, reference in work.items():
+        assert np.all(np.abs(r[loss] - reference) <= 1e-8 * size), loss
     lost = r["ELN"] + r["ELT"] + r["ELM"]
     terms = np.abs(r["ELN"]) + np.abs(r["ELT"]) + np.abs(r["ELM"])
     assert np.all(np.abs(lost - r["LOSS"] * r["KI"] / 100) <= 1e-14 * (r["KI"] + terms))
@@ -82,8 +82,8 @@ def test_a_small_loss_keeps_its_digits():
     """Central, elastic but for 1e-10: the loss is (1 - E^2) of the energy of the approach."""
     scene = {**RUN_1, "GA": 0.0, "DA": 0.0, "DB": 0.0, "UX": -40.0, "UY": 0.0, "VX": 20.0}
     scene |= {"VY": 0.0, "MU": 0.0, "EM": 1.0, "E": 1 - 1e-10}
-    reduced = 1 / (1 / scene["MA"] + 1 / scene["MB"])
-    exact = reduced * 60**2 / 2 * (1 - scene["E"]) * (1 + scene["E"])
+    mean_mass = 1 / (1 / scene["MA"] + 1 / scene["MB"])
+    exact = mean_mass * 60**2 / 2 * (1 - scene["E"]) * (1 + scene["E"])
     results = solve(scene)
     assert results["LOSS"] * results["KI"] / 100 == pytest.approx(exact, rel=1e-14)
     assert abs(results["KI"] - results["KF"] - exact) > 1e-8 * exact
@@ -94,14 +94,14 @@ def test_energy_equivalent_speeds():
     g = scenes("casework", 200, 7)
     r = solve(g)
     lost = r["LOSS"] * r["KI"] / 100
-    taken = g["MA"] * r["EESA"] ** 2 / 2 + g["MB"] * r["EESB"] ** 2 / 2
-    np.testing.assert_allclose(taken, np.maximum(lost, 0), rtol=1e-12, atol=1e-9)
+    energy = g["MA"] * r["EESA"] ** 2 / 2 + g["MB"] * r["EESB"] ** 2 / 2
+    np.testing.assert_allclose(energy, np.maximum(lost, 0), rtol=1e-12, atol=1e-9)
     wall = {**RUN_1, **STILL, "MB": np.inf, "IB": np.inf}
     # head on into a wall without rebound the equivalent speed is the speed
     square = {**wall, "E": 0, "MU": 0, "M": 4, "GA": 0, "UX": -50, "UY": 0}
     assert solve(square)["EESA"] == pytest.approx(50, rel=1e-15)
-    gained = solve({**RUN_1, "GA": 150})
-    assert (gained["EESA"], gained["EESB"]) == (0, 0)
+    results = solve({**RUN_1, "GA": 150})
+    assert (results["EESA"], results["EESB"]) == (0, 0)
 
 
 def test_units_of_mass_change_no_digit_of_a_velocity():
@@ -110,9 +110,9 @@ def test_units_of_mass_change_no_digit_of_a_velocity():
         results = solve(g, FINAL_VELOCITIES)
         for factor in (2.0**100, 2.0**-100):
             masses = {k: g[k] * factor for k in ("MA", "MB", "IA", "IB")}
-            scaled = solve({**g, **masses}, FINAL_VELOCITIES)
+            in_units = solve({**g, **masses}, FINAL_VELOCITIES)
             for result in FINAL_VELOCITIES:
-                np.testing.assert_array_equal(scaled[result], results[result])
+                np.testing.assert_array_equal(in_units[result], results[result])
 
 
 class TestSignRule:
@@ -155,8 +155,10 @@ class TestUnusableScenes:
                 results = solve({**g, name: column})
                 assert results["STATUS"][7] == Status.NOT_FINITE, name
                 for result in RESULTS:
-                    kept = np.delete(results[result], 7)
-                    np.testing.assert_array_equal(kept, np.delete(alone[result], 7), err_msg=name)
+                    remainder = np.delete(results[result], 7)
+                    np.testing.assert_array_equal(
+                        remainder, np.delete(alone[result], 7), err_msg=name
+                    )
                     assert result == "STATUS" or np.isnan(results[result][7]), (name, result)
 
     @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .formulas import E_MAX, E_MIN, EM_MAX, EM_MIN
-from .solve import POINT, evaluate
+from .solve import evaluate
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def margins(
     Parameters
     ----------
     known : mapping of str to float or array_like
-        What is known of the impacts, as in `evaluate`; `inverse.complete` gives all of it.
+        The impacts, of which everything is known (`inverse.complete`).
     scale : Scale, optional
         Typical sizes.
 
@@ -65,38 +65,29 @@ def margins(
     dict of str to tuple of ndarray
         Name in `BROKEN` -> one margin, or those of the lower and the upper end: 0 at the end,
         negative where the condition is violated, in units of ``scale``. They are differences
-        without a quotient, so that they are smooth where an impulse or an approach vanishes. A
-        condition that cannot be decided for lack of a value is absent; so is EM for point masses.
+        without a quotient, so that they are smooth where an impulse or an approach vanishes.
     """
     speed, mass, length = scale
-    names = ("gn", "PN", "PT", "EL", "VS", "waf", "wbf", "PM", "ia", "ib", "MUC")
-    v = evaluate(known, names)[0]
-    rows: dict[str, tuple[Any, ...]] = {}
-    if "EL" in v:
-        rows["energy"] = (v["EL"] / (mass * speed * speed),)
-    if "PN" in v:
-        rows["push"] = (v["PN"] / (mass * speed),)
-    if "gn" in v:
-        closing = -v["gn"] / speed
-        rows["approach"] = (closing,)
-        if "VS" in v:
-            separation = v["VS"] / speed
-            sign = np.where(closing < 0.0, -1.0, 1.0)
-            rows["E"] = (
-                sign * (separation - E_MIN * closing),
-                sign * (E_MAX * closing - separation),
-            )
-    is_point = (np.asarray(known.get("M", 6.0)) == POINT).all()
-    if {"waf", "PM", "ia"} <= v.keys() and not is_point:
-        spin = (v["waf"] - v["wbf"]) * (length / speed)
-        total = spin + v["PM"] * (v["ia"] + v["ib"]) * (length / speed)
-        sign = np.where(total < 0.0, -1.0, 1.0)
-        rows["EM"] = (sign * (spin - EM_MIN * total), sign * (EM_MAX * total - spin))
-    if {"PN", "PT", "MUC"} <= v.keys():
-        low, high = friction_range(v["MUC"])
-        pn, pt = v["PN"] / (mass * speed), v["PT"] / (mass * speed)
-        rows["friction"] = (pt - low * pn, high * pn - pt)
-    return rows
+    impulse, spin = mass * speed, speed / length
+    v, _ = evaluate(known, ("gn", "PN", "PT", "EL", "VS", "waf", "wbf", "PM", "ia", "ib", "MUC"))
+    pn, pt = v["PN"] / impulse, v["PT"] / impulse
+    closing, separation = -v["gn"] / speed, v["VS"] / speed
+    turning = (v["waf"] - v["wbf"]) / spin
+    low, high = friction_range(v["MUC"])
+    return {
+        "approach": (closing,),
+        "push": (pn,),
+        "energy": (v["EL"] / (impulse * speed),),
+        "E": _between(E_MIN, separation, E_MAX, closing),
+        "EM": _between(EM_MIN, turning, EM_MAX, turning + v["PM"] * (v["ia"] + v["ib"]) / spin),
+        "friction": (pt - low * pn, high * pn - pt),
+    }
+
+
+def _between(low: float, part: Any, high: float, total: Any) -> tuple[Any, Any]:
+    """Return how far a part lies between two fractions of a total."""
+    sign = np.where(total < 0.0, -1.0, 1.0)
+    return sign * (part - low * total), sign * (high * total - part)
 
 
 def friction_range(critical: ArrayLike) -> tuple[Floats, Floats]:
@@ -113,11 +104,8 @@ def friction_range(critical: ArrayLike) -> tuple[Floats, Floats]:
     >>> print(low.round(3), high.round(3))
     -0.2 0.7
     """
-    ends = np.nan_to_num(np.asarray(critical, np.float64), nan=MAX_FRICTION)
-    ends = np.clip(ends, -MAX_FRICTION, MAX_FRICTION)
+    ends = np.clip(np.nan_to_num(critical, nan=MAX_FRICTION), -MAX_FRICTION, MAX_FRICTION)
     low, high = np.minimum(ends, 0.0), np.maximum(ends, 0.0)
     allowance = FRICTION_ALLOWANCE * (high - low) + FRICTION_OFFSET
-    return (
-        np.maximum(low - allowance, -MAX_FRICTION),
-        np.minimum(high + allowance, MAX_FRICTION),
-    )
+    low, high = np.clip((low - allowance, high + allowance), -MAX_FRICTION, MAX_FRICTION)
+    return low, high
