@@ -30,11 +30,11 @@ def test_errors_are_those_of_the_arithmetic(measurements):
     by_method = {
         method: row.largest for (name, method), row in measurements.items() if name == "cars"
     }
-    listing, lapack, replay, by_numpy, compiled = by_method.values()
+    listing, lapack, replay, by_numpy, by_library = by_method.values()
     assert 1e-10 < listing < 1e-6  # eight decimals of pi
     assert 1e-10 < replay < 1e-5
     assert lapack < 1e-11
-    assert by_numpy == compiled < 1e-13
+    assert by_numpy == by_library < 1e-13
 
 
 def test_elimination_loses_the_digits_of_a_heavy_vehicle(measurements):

@@ -38,47 +38,47 @@ def test_momentum_of_the_staged_collisions_as_measured():
 
 
 def test_published_crash_tests():
-    found = {(source, quantity): (count, middle, largest)
+    values = {(source, quantity): (count, middle, largest)
              for source, quantity, _, _, count, middle, largest in medians(checks())}  # fmt: skip
-    count, _, largest = found["NHTSA oblique offset", "critical impulse ratio"]
+    count, _, largest = values["NHTSA oblique offset", "critical impulse ratio"]
     assert (count, round(largest, 3)) == (4, 0.006)
-    count, middle, largest = found["IIHS small overlap", "ΔV along the course"]
+    count, middle, largest = values["IIHS small overlap", "ΔV along the course"]
     assert (count, round(middle, 2), round(largest, 1)) == (21, 0.92, 4.8)
 
 
 @pytest.fixture
 def impacts():
     rng = np.random.default_rng(2)
-    known = {"MA": 154.7, "MB": 99.1, "E": rng.uniform(0.1, 1, 200)}
-    known["MUP"] = rng.normal(0, 0.5, 200)
-    return known | {name: rng.normal(0, 30, 200) for name in INITIAL}
+    inputs = {"MA": 154.7, "MB": 99.1, "E": rng.uniform(0.1, 1, 200)}
+    inputs["MUP"] = rng.normal(0, 0.5, 200)
+    return inputs | {name: rng.normal(0, 30, 200) for name in INITIAL}
 
 
 def test_colinear_impact_is_that_of_point_masses(impacts):
-    found = colinear(impacts)
+    values = colinear(impacts)
     scene = {"M": 4, "MA": 154.7, "MB": 99.1, "E": impacts["E"], "GA": 0, "WA": 0, "WB": 0}
     scene |= {x: impacts[n] for x, n in zip(("UX", "UY", "VX", "VY"), INITIAL, strict=True)}
     slides_along_t = impacts["UT"] > impacts["VT"]
     scene["MU"] = np.where(slides_along_t, -impacts["MUP"], impacts["MUP"])
-    expected = solve(scene)
+    reference = solve(scene)
     for name, like in zip(FINAL, ("VAX", "VAY", "VBX", "VBY"), strict=True):
-        np.testing.assert_allclose(found[name], expected[like], atol=1e-9)
-    np.testing.assert_allclose(found["LOSS"], expected["LOSS"], atol=1e-9)
+        np.testing.assert_allclose(values[name], reference[like], atol=1e-9)
+    np.testing.assert_allclose(values["LOSS"], reference["LOSS"], atol=1e-9)
 
 
 def test_colinear_inverse_goes_back(impacts):
-    found = colinear(impacts)
-    after = {name: found[name] for name in FINAL}
+    values = colinear(impacts)
+    after = {name: values[name] for name in FINAL}
     back = colinear_inverse({n: impacts[n] for n in ("MA", "MB", "E", "MUP")} | after)
     for name in INITIAL:
         np.testing.assert_allclose(back[name], impacts[name], atol=1e-9)
 
 
 def test_no_inverse_without_restitution():
-    known = {"MA": 1, "MB": 2, "MUP": 0, **dict.fromkeys(FINAL, 1.0)}
+    inputs = {"MA": 1, "MB": 2, "MUP": 0, **dict.fromkeys(FINAL, 1.0)}
     with pytest.raises(UserError, match="E = 0"):
-        colinear_inverse({**known, "E": 0})
-    assert np.isnan(colinear_inverse({**known, "E": [0.0, 0.5]})["UN"][0])
+        colinear_inverse({**inputs, "E": 0})
+    assert np.isnan(colinear_inverse({**inputs, "E": [0.0, 0.5]})["UN"][0])
 
 
 def test_a_barrier_is_a_body_of_enormous_mass():
@@ -96,14 +96,14 @@ def test_what_is_no_value_of_a_barrier(name, value):
 
 
 def test_losses_and_speeds_for_equation_19():
-    known = {"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667}
+    inputs = {"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667}
     energy = 0.374 * (96 * 36.667**2 + 145 * 58.667**2) / 2
-    assert deltav.loss_of_energy({**known, "EL": energy}) == pytest.approx(37.4)
+    assert deltav.loss_of_energy({**inputs, "EL": energy}) == pytest.approx(37.4)
     assert deltav.initial_velocity(5.0, -3.0, 4.0) == pytest.approx(-6.0)
     with pytest.raises(UserError, match="less than the final velocity"):
         deltav.initial_velocity(1.0, 0.0, 2.0)
     with pytest.raises(UserError, match="LOSS"):
-        deltav.delta_v(known)
+        deltav.delta_v(inputs)
 
 
 def test_error_of_equation_19_against_the_measurements():

@@ -20,7 +20,7 @@ MOST = {**dict.fromkeys(EXTREME, 6.0), "evolved": 10.0}  # roundings; 3 of the o
 EVOLVED = Path(__file__).with_name("evolved.csv")
 
 
-def evolved():
+def evolution_scenes():
     """Return 24 scenes that an evolution strategy bred for large errors."""
     names, *rows = csv.reader(EVOLVED.read_text("ascii").splitlines())
     return dict(zip(names, np.array(rows, np.float64).T.copy(), strict=True))
@@ -46,7 +46,7 @@ def errors(g):
 
 @pytest.mark.parametrize("name", [*POPULATIONS, "evolved"])
 def test_errors_in_roundings_of_the_scene(name):
-    g = evolved() if name == "evolved" else scenes(name, 25, 88)
+    g = evolution_scenes() if name == "evolved" else scenes(name, 25, 88)
     worst = errors(g)
     assert max(worst[v] for v in FINAL_VELOCITIES) * ROUNDINGS <= MOST.get(name, 3.0)
     assert max(worst.values()) * ROUNDINGS <= 12.0  # a fifth of the bound that is reported
@@ -56,9 +56,9 @@ def test_the_bound_where_nothing_is_left_of_a_velocity():
     """A car before a wall without rebound: what is not 0 is rounding of the velocity before."""
     g = {**scenes("casework", 1000, 5), "M": np.full(1000, 4.0), "MB": np.full(1000, np.inf)}
     g |= {name: np.zeros(1000) for name in ("E", "MU", "GA", "UY", "VX", "VY", "WA", "WB")}
-    left = np.abs(solve(g, "VAX")["VAX"])
-    assert 0 < left.max() <= 1e-13
-    assert np.all(left <= error_bounds(g)["VAX"])
+    remainder = np.abs(solve(g, "VAX")["VAX"])
+    assert 0 < remainder.max() <= 1e-13
+    assert np.all(remainder <= error_bounds(g)["VAX"])
 
 
 def test_a_wrong_digit_is_beyond_the_bound():

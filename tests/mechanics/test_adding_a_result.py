@@ -45,8 +45,8 @@ def insert(path, before, text):
 
 def test_a_result_is_one_function_one_row_and_one_line(tmp_path):
     copy = tmp_path / "impact88"
-    omitted = shutil.ignore_patterns("__pycache__", "*.so", "*.pyd")
-    shutil.copytree(PACKAGE, copy, ignore=omitted)
+    ignore = shutil.ignore_patterns("__pycache__", "*.so", "*.pyd")
+    shutil.copytree(PACKAGE, copy, ignore=ignore)
     insert(copy / "mechanics" / "formulas.py", "\n# -- energies\n", FUNCTION)
     insert(copy / "names.py", '    ("COND", "κ"', ROW)
     insert(copy / "mechanics" / "reference.py", '    f["VC"] =', LINE)

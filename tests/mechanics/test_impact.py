@@ -61,25 +61,25 @@ def test_a_scene_alone_has_the_bits_that_it_has_among_others():
 def test_known_velocities_and_impulses_give_the_remaining_results():
     g = one_scene()
     f = solve(g)
-    known = {**g, **{n: f[n] for n in (*FINAL_VELOCITIES, "PN", "PT", "PM")}}
-    values, missing = evaluate(known, list(RESULTS))
+    state = {**g, **{n: f[n] for n in (*FINAL_VELOCITIES, "PN", "PT", "PM")}}
+    values, missing = evaluate(state, list(RESULTS))
     assert missing == {}
     for name in RESULTS:
         assert values[name] == pytest.approx(f[name], rel=1e-13), name
-    del known["IA"]
-    values, missing = evaluate(known, ["VC", "KI"])
+    del state["IA"]
+    values, missing = evaluate(state, ["VC", "KI"])
     assert missing == {"KI": ("IA",)}
     assert values["VC"] == f["VC"]
 
 
 def test_point_masses_need_no_dimensions():
     g = {**one_scene(), "M": 4.0}
-    few = {name: x for name, x in g.items() if name not in UNUSED_BY_POINTS}
-    assert_same_bits(solve(few), solve(g))
-    mixed = {**g, "M": np.array([4.0, 4.0, 6.0]), "WA": np.array([0.0, 1.0, 1.0])}
-    column = {**mixed, "M": np.full(3, 4.0)}
+    subset = {name: x for name, x in g.items() if name not in UNUSED_BY_POINTS}
+    assert_same_bits(solve(subset), solve(g))
+    masses = {**g, "M": np.array([4.0, 4.0, 6.0]), "WA": np.array([0.0, 1.0, 1.0])}
+    column = {**masses, "M": np.full(3, 4.0)}
     for name, array in solve(column).items():
-        np.testing.assert_array_equal(array[:2], solve(mixed)[name][:2], err_msg=name)
+        np.testing.assert_array_equal(array[:2], solve(masses)[name][:2], err_msg=name)
 
 
 def test_prepared_has_the_bits_of_solve():
@@ -97,10 +97,12 @@ def test_prepared_has_the_bits_of_solve():
 
 def test_prepared_takes_numbers_arrays_and_texts():
     loss = prepared("MU,E", "LOSS", sample(1))
-    one = solve({**sample(1).numbers(), "MU": 0.5, "E": 0.2}, "LOSS")["LOSS"]
-    assert loss([0.5, 0.2])["LOSS"] == loss(("0.5", 0.2))["LOSS"] == one
+    alone_value = solve({**sample(1).numbers(), "MU": 0.5, "E": 0.2}, "LOSS")["LOSS"]
+    assert loss([0.5, 0.2])["LOSS"] == loss(("0.5", 0.2))["LOSS"] == alone_value
     assert isinstance(loss([0.5, 0.2])["LOSS"], float)
-    assert loss([0.5, np.full((2, 3), 0.2)])["LOSS"].tolist() == np.full((2, 3), one).tolist()
+    assert (
+        loss([0.5, np.full((2, 3), 0.2)])["LOSS"].tolist() == np.full((2, 3), alone_value).tolist()
+    )
     with ThreadPoolExecutor(4) as pool:
         rows = [np.random.default_rng(k).random((2, 500)) for k in range(8)]
         for row, results in zip(rows, pool.map(loss, rows), strict=True):
@@ -156,12 +158,12 @@ def test_out_wherever_its_arrays_lie_in_memory():
     n = 300
     block = np.zeros(18 * n, np.uint8)
     g = {**one_scene(), "MU": np.linspace(0, 1, n)}
-    expected = solve(g)
+    reference = solve(g)
     for status, speed, loss in ((0, 2, 10), (8, 0, 10), (16, 0, 8)):
         out = {"STATUS": block[status * n : (status + 2) * n].view(np.uint16)}
         for name, at in (("VAX", speed), ("LOSS", loss)):
             out[name] = block[at * n : (at + 8) * n].view(np.float64)
-        assert_same_bits(solve(g, out=out), {name: expected[name] for name in out})
+        assert_same_bits(solve(g, out=out), {name: reference[name] for name in out})
         with pytest.raises(UserError, match="shares memory"):
             solve({**g, "MU": out["VAX"]}, out=out)
     out = {"VAX": block[: 8 * n].view(np.float64), "LOSS": block[8 : 8 + 8 * n].view(np.float64)}
@@ -171,11 +173,11 @@ def test_out_wherever_its_arrays_lie_in_memory():
 
 def test_columns_that_are_not_aligned_or_read_only():
     g = mixed_scenes(300)
-    expected = solve(g, "VAX STATUS")
-    shifted = {
+    reference = solve(g, "VAX STATUS")
+    copies = {
         name: np.frombuffer(b"." + x.tobytes(), np.float64, offset=1) for name, x in g.items()
     }
-    assert_same_bits(solve(shifted, "VAX STATUS"), expected)
+    assert_same_bits(solve(copies, "VAX STATUS"), reference)
     rows = np.frombuffer(b"." + g["E"].tobytes(), np.float64, offset=1).reshape(1, -1)
     scene = one_scene()
     together = solve({**scene, "E": g["E"]}, "VAX")
@@ -220,14 +222,14 @@ def test_frames_give_arrays(kind):
 
 def test_values_of_other_types():
     g = one_scene()
-    expected = solve(g, "VAX LOSS")
+    reference = solve(g, "VAX LOSS")
     texts = {name: repr(x) for name, x in g.items()}
-    assert_same_bits(solve(texts, "VAX LOSS"), expected)
+    assert_same_bits(solve(texts, "VAX LOSS"), reference)
     row = solve({**g, "MU": [repr(g["MU"]), g["MU"], None]}, "VAX")["VAX"]
-    assert row[0] == row[1] == expected["VAX"]
+    assert row[0] == row[1] == reference["VAX"]
     assert np.isnan(row[2])
-    masked = np.ma.masked_array([g["MU"], g["MU"]], [False, True])
-    assert np.isnan(solve({**g, "MU": masked}, "VAX")["VAX"]).tolist() == [False, True]
+    array = np.ma.masked_array([g["MU"], g["MU"]], [False, True])
+    assert np.isnan(solve({**g, "MU": array}, "VAX")["VAX"]).tolist() == [False, True]
     assert solve({**g, "M": 6, "MA": np.float32(90)}, "VAX") == solve({**g, "MA": 90}, "VAX")
 
 
@@ -271,21 +273,21 @@ def test_other_input_that_cannot_be_used():
 
 
 def test_missing_columns_are_named():
-    few = {n: x for n, x in one_scene().items() if n != "IA"}
+    subset = {n: x for n, x in one_scene().items() if n != "IA"}
     with pytest.raises(UserError, match=r"missing IA \(yaw moment of inertia of A\)"):
-        solve(few, "VAX")
-    assert solve(few, "VC")["VC"] == solve(one_scene(), "VC")["VC"]
+        solve(subset, "VAX")
+    assert solve(subset, "VC")["VC"] == solve(one_scene(), "VC")["VC"]
 
 
 def test_evaluate_at_small_and_large_sizes_by_both_ways():
     g = mixed_scenes(5000)
     names = ["VAX", "gn", "SA", "PDOFA", "LOSS", "STATUS"]
     together = evaluate(g, names)[0]
-    few = evaluate({name: x[:100] for name, x in g.items()}, names)[0]
+    subset = evaluate({name: x[:100] for name, x in g.items()}, names)[0]
     with library.switched_off():
         slow = evaluate(g, names)[0]
     for name in names:
-        np.testing.assert_array_equal(together[name][:100], few[name])
+        np.testing.assert_array_equal(together[name][:100], subset[name])
         np.testing.assert_array_equal(together[name], slow[name])
     assert evaluate(one_scene(), "UX VAX")[0]["UX"] == one_scene()["UX"]
     # of a quantity that a formula gives among others the known value counts
@@ -319,8 +321,8 @@ def test_the_switch_of_the_environment(switch):
     run = subprocess.run(
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True
     )
-    expected = None if switch == "0" else impact88.accelerated
-    assert run.stdout.startswith(f"{expected} "), run.stderr
+    reference = None if switch == "0" else impact88.accelerated
+    assert run.stdout.startswith(f"{reference} "), run.stderr
 
 
 def test_the_direction_of_the_force_on_a_point_mass_is_measured_from_its_heading():

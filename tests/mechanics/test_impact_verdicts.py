@@ -111,7 +111,8 @@ class TestSides:
         for off, is_wrong in ((-0.01, False), (0.0, False), (0.01, True)):
             angle = math.radians(RUN_1["T" + vehicle] + level + off - RUN_1["GA"])
             assert (RUN_1["D" + vehicle] * math.cos(angle) < -1e-6) == is_wrong
-            assert (bit in bits(**{"P" + vehicle: level + off})) == is_wrong
+            change = {"P" + vehicle: level + off}
+            assert (bit in bits(**change)) == is_wrong
 
     def test_what_to_reverse(self):
         sentences = status.sentences(int(bits(TA=180)))
@@ -135,9 +136,11 @@ class TestRangesAndEnergies:
     def test_each_has_a_bit_of_its_own(self, name, bit, inside, outside):
         ranges = Status.E_OUT_OF_RANGE | Status.EM_OUT_OF_RANGE | Status.MU_OUT_OF_RANGE
         for value in inside:
-            assert not bits(**{name: value}) & ranges, value
+            change = {name: value}
+            assert not bits(**change) & ranges, value
         for value in outside:
-            assert bits(**{name: value}) & ranges == bit, value
+            change = {name: value}
+            assert bits(**change) & ranges == bit, value
 
     def test_published_runs_have_no_remark(self):
         for number in (1, 2, 3):

@@ -25,38 +25,38 @@ def cars(count=40, seed=3):
     return g, {**g, **solve(g)}
 
 
-def given(everything, late, as_impulse):
+def inputs_of(impacts, late, as_impulse):
     """Return what is known of impacts: velocities ``late`` or early, laws by impulse or not."""
     names = [b if z else a for (a, b), z in zip(PAIRS, late, strict=True)]
     names += [b if z else a for (a, b), z in zip(LAW_PAIRS, as_impulse, strict=True)]
     bodies = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA", "M")
-    return {name: everything[name] for name in (*bodies, *names)}
+    return {name: impacts[name] for name in (*bodies, *names)}
 
 
 def test_every_mixture_gives_the_same_impact():
-    _, everything = cars()
+    _, impacts = cars()
     rng = np.random.default_rng(1)
     mixtures = [([True] * 6, [False] * 3), ([False] * 6, [False] * 3)]
     mixtures += [(rng.random(6) < 0.5, rng.random(3) < 0.5) for _ in range(40)]
     for late, as_impulse in mixtures:
-        values = complete(given(everything, late, as_impulse)).values
+        values = complete(inputs_of(impacts, late, as_impulse)).values
         for name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, "MU"):
-            size = np.abs(everything[name]).max()
-            error = np.median(np.abs(values[name] - everything[name]))
+            size = np.abs(impacts[name]).max()
+            error = np.median(np.abs(values[name] - impacts[name]))
             assert error <= 1e-12 * size, (name, late, as_impulse)
     values, missing = evaluate(values, list(RESULTS))
     assert not missing
     for name in ("XAF", "VS", "KF", "LOSS", "MUC", "STATUS"):
-        np.testing.assert_allclose(values[name], everything[name], rtol=1e-7, atol=1e-7)
+        np.testing.assert_allclose(values[name], impacts[name], rtol=1e-7, atol=1e-7)
 
 
 @pytest.mark.parametrize(("late", "as_impulse"), list(itertools.product((0, 1, 5), (0, 1, 2))))
 def test_the_volume_is_the_determinant_of_differences(late, as_impulse):
-    _, everything = cars(1, 7)
-    known = {
+    _, impacts = cars(1, 7)
+    inputs = {
         name: float(np.squeeze(value))
-        for name, value in given(
-            everything,
+        for name, value in inputs_of(
+            impacts,
             [k < late for k in range(6)],
             [k < as_impulse for k in range(3)],
         ).items()
@@ -65,20 +65,20 @@ def test_the_volume_is_the_determinant_of_differences(late, as_impulse):
     free += [b if k < as_impulse else a for k, (a, b) in enumerate(LAW_PAIRS)]
     rows = []
     for name in free:
-        step = 1e-6 * max(abs(known[name]), 1.0)
-        upper = complete({**known, name: known[name] + step}).values
-        lower = complete({**known, name: known[name] - step}).values
+        step = 1e-6 * max(abs(inputs[name]), 1.0)
+        upper = complete({**inputs, name: inputs[name] + step}).values
+        lower = complete({**inputs, name: inputs[name] - step}).values
         row = [(upper[x] - lower[x]) / (2 * step) for x in (*VELOCITIES, *COEFFICIENTS)]
         rows.append([float(x) for x in row])
     volume = np.log(abs(np.linalg.det(np.array(rows))))
-    assert float(complete(known).log_volume) == pytest.approx(volume, abs=1e-5)
+    assert float(complete(inputs).log_volume) == pytest.approx(volume, abs=1e-5)
 
 
 def test_there_is_no_inverse_without_rebound_moment_or_sliding():
-    _, everything = cars(3)
+    _, impacts = cars(3)
     for change in ({"E": np.zeros(3)}, {"EM": np.zeros(3)}, {"MUP": np.full(3, -10.0)}):
-        known = {**given(everything, [True] * 6, [False] * 3), **change}
-        values = complete(known).values
+        inputs = {**inputs_of(impacts, [True] * 6, [False] * 3), **change}
+        values = complete(inputs).values
         sizes = np.abs([values[name] for name in VELOCITIES])
         assert np.all(~np.isfinite(sizes).all(axis=0) | (sizes.max(axis=0) > 1e9))
 
@@ -96,12 +96,12 @@ def test_points_and_what_is_missing():
 
 
 def test_consequences_by_plain_trigonometry():
-    _, everything = cars(200, 5)
+    _, impacts = cars(200, 5)
     names = "SA HA SAF HBF DVAF DVAR DVBF DVBR PDOFA PDOFB P EL DT CAX CAY CBX CBY RR0".split()
-    values, missing = evaluate(everything, names)
+    values, missing = evaluate(impacts, names)
     assert not missing
-    x, y = everything["VAX"] - everything["UX"], everything["VAY"] - everything["UY"]
-    front = np.radians(everything["TA"]) + np.pi
+    x, y = impacts["VAX"] - impacts["UX"], impacts["VAY"] - impacts["UY"]
+    front = np.radians(impacts["TA"]) + np.pi
     forward, right = x * np.cos(front) + y * np.sin(front), x * np.sin(front) - y * np.cos(front)
     np.testing.assert_allclose(values["DVAF"], forward, atol=1e-9)
     np.testing.assert_allclose(values["DVAR"], right, atol=1e-9)
@@ -110,26 +110,24 @@ def test_consequences_by_plain_trigonometry():
     turns = (values["PDOFA"] - clockwise) / 360
     np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
     assert np.all((values["PDOFA"] > -180) & (values["PDOFA"] <= 180))
-    np.testing.assert_allclose(np.hypot(values["DVBF"], values["DVBR"]), everything["DVB"])
-    np.testing.assert_allclose(values["SAF"], np.hypot(everything["VAX"], everything["VAY"]))
-    np.testing.assert_allclose(
-        np.tan(np.radians(values["HA"])), everything["UY"] / everything["UX"]
-    )
-    np.testing.assert_allclose(values["EL"], everything["KI"] - everything["KF"], atol=1e-6)
+    np.testing.assert_allclose(np.hypot(values["DVBF"], values["DVBR"]), impacts["DVB"])
+    np.testing.assert_allclose(values["SAF"], np.hypot(impacts["VAX"], impacts["VAY"]))
+    np.testing.assert_allclose(np.tan(np.radians(values["HA"])), impacts["UY"] / impacts["UX"])
+    np.testing.assert_allclose(values["EL"], impacts["KI"] - impacts["KF"], atol=1e-6)
     # both vehicles have the contact point where their velocities differ by spin alone
-    spin_x = everything["XA"] - everything["UX"]
-    np.testing.assert_allclose(-values["CAY"] * everything["WA"], spin_x, atol=1e-9)
+    spin_x = impacts["XA"] - impacts["UX"]
+    np.testing.assert_allclose(-values["CAY"] * impacts["WA"], spin_x, atol=1e-9)
     assert np.isnan(evaluate({"UX": 0.0, "UY": 0.0}, "HA")[0]["HA"])
 
 
 def test_velocities_alone_give_what_needs_no_geometry():
-    _, everything = cars(20)
-    known = {n: everything[n] for n in ("MA", "MB", "IA", "IB", *VELOCITIES, *FINAL_STATE, "GA")}
+    _, impacts = cars(20)
+    inputs = {n: impacts[n] for n in ("MA", "MB", "IA", "IB", *VELOCITIES, *FINAL_STATE, "GA")}
     names = ("DVA", "DVB", "KI", "KF", "LOSS", "PN", "PT", "MUP", "VC")
-    values, missing = evaluate(known, names)
+    values, missing = evaluate(inputs, names)
     assert missing == {"VC": ("DA", "DB", "PA", "PB", "TA", "TB")}
     for name in values:
-        np.testing.assert_allclose(values[name], everything[name], rtol=1e-6, err_msg=name)
+        np.testing.assert_allclose(values[name], impacts[name], rtol=1e-6, err_msg=name)
 
 
 def laws_by_hand(scene, after):
@@ -147,8 +145,8 @@ def laws_by_hand(scene, after):
         linear = scene["MA"] * hypot(ux, uy) ** 2 + scene["MB"] * hypot(vx, vy) ** 2
         return 0.5 * (linear + scene["IA"] * wa**2 + scene["IB"] * wb**2)
 
-    pushed = scene["MA"] * ((after[0] - before[0]) * n[0] + (after[1] - before[1]) * n[1])
-    bits = 1 * (contact(*before) >= 0) + 2 * (pushed < 0)
+    push = scene["MA"] * ((after[0] - before[0]) * n[0] + (after[1] - before[1]) * n[1])
+    bits = 1 * (contact(*before) >= 0) + 2 * (push < 0)
     bits += 8 * (energy(*after) > energy(*before) * (1 + 1e-12))
     bits += 16 * (not 0 <= scene["E"] <= 1)
     return bits + 1024 * (not -1 <= scene["EM"] <= 0 and scene["EM"] != 1)
@@ -156,39 +154,39 @@ def laws_by_hand(scene, after):
 
 def test_random_impacts_break_the_laws_that_their_velocities_show():
     rng = np.random.default_rng(52)
-    seen = 0
+    union = 0
     for _ in range(200):
         scene = {name: value * rng.uniform(0.5, 2) for name, value in RUN_1.items()}
         scene |= dict(zip(VELOCITIES, rng.normal(0, (20, 20, 1, 20, 20, 1)).tolist(), strict=True))
         scene |= {"M": 6.0, "GA": rng.uniform(-180, 180), "E": rng.uniform(-0.5, 1.5)}
         scene |= {"EM": rng.choice([1, 0, -0.5, rng.uniform(-2, 2)]), "MU": rng.uniform(-2, 2)}
         results = solve(scene)
-        expected = laws_by_hand(scene, [float(results[name]) for name in FINAL_STATE])
-        assert expected == int(results["STATUS"]) & IMPOSSIBLE
+        bits = laws_by_hand(scene, [float(results[name]) for name in FINAL_STATE])
+        assert bits == int(results["STATUS"]) & IMPOSSIBLE
         parts = margins({**scene, **results})
         assert parts.keys() == BROKEN.keys()
         for name, bit in (("approach", 1), ("push", 2), ("energy", 8), ("E", 16), ("EM", 1024)):
-            assert (min(map(float, parts[name])) < 0) >= bool(expected & bit), name
-        seen |= expected
-    assert seen == IMPOSSIBLE
+            assert (min(map(float, parts[name])) < 0) >= bool(bits & bit), name
+        union |= bits
+    assert union == IMPOSSIBLE
 
 
 def test_margins_are_pure_numbers_with_both_ends():
-    g, everything = cars(50)
-    plain = margins(everything)
+    g, impacts = cars(50)
+    plain = margins(impacts)
     speed, mass = 3.0, 7.0
-    scaled = margins(everything, Scale(speed, mass, 2.0))
-    np.testing.assert_allclose(scaled["push"][0], plain["push"][0] / (speed * mass))
-    np.testing.assert_allclose(scaled["energy"][0], plain["energy"][0] / (mass * speed**2))
+    in_units = margins(impacts, Scale(speed, mass, 2.0))
+    np.testing.assert_allclose(in_units["push"][0], plain["push"][0] / (speed * mass))
+    np.testing.assert_allclose(in_units["energy"][0], plain["energy"][0] / (mass * speed**2))
     for name, value in (("E", g["E"]), ("EM", g["EM"] + 1)):
         low, high = plain[name]
         # the two ends divide the range as the coefficient does
         np.testing.assert_allclose(low / (low + high), value, rtol=1e-9)
-    low, high = friction_range(everything["MUC"])
-    inside = (everything["MUP"] >= low) & (everything["MUP"] <= high)
-    pushes = everything["PN"] > 0
+    low, high = friction_range(impacts["MUC"])
+    inside = (impacts["MUP"] >= low) & (impacts["MUP"] <= high)
+    pushes = impacts["PN"] > 0
     np.testing.assert_array_equal((np.min(plain["friction"], axis=0) >= 0)[pushes], inside[pushes])
-    points = margins({**everything, **solve({**g, "M": 4.0}), "M": 4.0})
+    points = margins({**impacts, **solve({**g, "M": 4.0}), "M": 4.0})
     assert not np.any(points["EM"])  # without a moment, on the ends
 
 
