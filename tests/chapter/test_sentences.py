@@ -41,12 +41,12 @@ def changes_with_em() -> str:
     """The largest change of loss and delta-V where EM is changed by .1, within its range."""
     changes: dict[str, list[float]] = {"LOSS": [], "DVA": [], "DVB": []}
     for collision in COLLISIONS:
-        fitted = staged.forward(collision)
+        original = staged.forward(collision)
         for step in (-0.1, 0.1):
             em = np.clip(collision.coefficients["EM"] + step, -1, 0)
             changed_em = staged.forward(collision, {**collision.coefficients, "EM": em})
             for name, sizes in changes.items():
-                sizes.append(abs(value(changed_em, name) - value(fitted, name)))
+                sizes.append(abs(value(changed_em, name) - value(original, name)))
     loss, *speeds = map(max, changes.values())
     return f"{loss:.2f} percent of KI and {max(speeds):.2f} ft/s for a change of .1"
 
@@ -61,7 +61,7 @@ def losses() -> str:
 
 
 def errors_of_equation_19() -> str:
-    """Median and largest difference of Equation 19 from the fitted delta-V."""
+    """Median and largest difference of Equation 19 from the original delta-V."""
     errors = [
         abs(value(staged.prediction(collision), name) - value(staged.forward(collision), name))
         for collision in COLLISIONS

@@ -169,32 +169,6 @@ def prediction(collision: Collision, loss: Any = None) -> dict[str, Array]:
     return delta_v({**collision.scene, **speeds, "LOSS": loss})
 
 
-def closure(collision: Collision) -> dict[str, float]:
-    """Return the changes of momentum of both vehicles as measured, nothing fitted.
-
-    ``x_of_a`` and minus that of B, ``x_of_b``, are equal where momentum is conserved, and so on
-    along y and for the moment impulse at the contact point (Equation 17). NaN where a velocity is
-    lost."""
-    impact = collision.scene | collision.measured
-    ma, mb = impact["MA"], impact["MB"]
-    v, _ = evaluate(impact, ("LOSS", "D1", "D2", "D3", "D4"))
-    ax, ay = impact["VAX"] - impact["UX"], impact["VAY"] - impact["UY"]
-    bx, by = impact["VBX"] - impact["VX"], impact["VBY"] - impact["VY"]
-    turn_a = impact["IA"] * (impact["WAF"] - impact["WA"])
-    turn_b = impact["IB"] * (impact["WBF"] - impact["WB"])
-    return {
-        "number": collision.number,
-        "loss": float(v["LOSS"]),
-        "x_of_a": ma * ax,
-        "x_of_b": -mb * bx,
-        "y_of_a": ma * ay,
-        "y_of_b": -mb * by,
-        # the impulse acts at (-D4, -D3) from A's center, and at (D2, D1) from B's
-        "spin_of_a": float(turn_a - ma * (v["D3"] * ax - v["D4"] * ay)),
-        "spin_of_b": float(-turn_b + mb * (v["D2"] * by - v["D1"] * bx)),
-    }
-
-
 def comparison() -> list[Compared]:
     """Return loss and the three pairs of ΔV of Table 2 beside their recomputation."""
     rows = []
