@@ -14,7 +14,7 @@ import impact88
 from cases import CRASH, FILES, IMPOSSIBLE, INTERSECTION, REAR_END, RECORDER
 from impact88.cases.case import Case
 from impact88.report.answers import ALL, ask, scene_case
-from impact88.report.rounding import decimals_in, rounded
+from impact88.report.rounding import decimals_in, round_number
 
 
 def test_a_complete_scene_is_solved_forward() -> None:
@@ -107,7 +107,7 @@ def test_the_scene_of_an_answer_is_solved_forward_to_the_same() -> None:
     ],
 )
 def test_one_rule_of_rounding(value: float, width: float, text: str) -> None:
-    assert rounded(value, decimals_in("length", [value], width)) == text
+    assert round_number(value, decimals_in("length", [value], width)) == text
 
 
 @pytest.mark.parametrize("name", ["crash.toml", "rear.toml", "recorder.toml", "intersection.toml"])

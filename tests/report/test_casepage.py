@@ -39,8 +39,8 @@ def test_numbers_are_the_answers_own_texts(name: str) -> None:
 
 def test_the_order_of_entries_changes_no_number() -> None:
     case = case_of(UX="-25 +- 2", E="0.1 .. 0.3")
-    other = type(case).of(dict(reversed(case.written.items())))
-    assert ask(other).found == ask(case).found
+    reversed_case = type(case).of(dict(reversed(case.written.items())))
+    assert ask(reversed_case).found == ask(case).found
 
 
 def test_a_case_page_is_complete() -> None:

@@ -61,9 +61,9 @@ def test_the_same_scene_looks_the_same_in_other_axes() -> None:
     """SAE axes mirror y and angles; the scene seen from above stays, y is shown downwards."""
     names = ("PA", "PB", "GA", "TA", "TB", "UY", "VY", "WA", "WB")
     plain = case_of("oblique")
-    mirrored = {name: f"{-float(plain.written[name]):g}" for name in names}
+    mirror_image = {name: f"{-float(plain.written[name]):g}" for name in names}
     shapes = paths(drawing("oblique"))
-    assert shapes == paths(drawing("oblique", axes="sae", **mirrored))
+    assert shapes == paths(drawing("oblique", axes="sae", **mirror_image))
     assert len(shapes) > 15
 
 
@@ -101,9 +101,9 @@ def test_bodies_are_drawn_by_class_of_weight(mass: str, words: str) -> None:
 
 
 def test_measured_sizes_are_used() -> None:
-    plain, measured = drawing(IA="2000"), drawing(IA="2000", LA="8 ft", BA="4 ft")
-    assert "A is drawn as measured; " in re.sub(r"(<[^>]*>|\s)+", " ", measured)
-    assert paths(plain)[4] != paths(measured)[4]
+    plain, sized = drawing(IA="2000"), drawing(IA="2000", LA="8 ft", BA="4 ft")
+    assert "A is drawn as measured; " in re.sub(r"(<[^>]*>|\s)+", " ", sized)
+    assert paths(plain)[4] != paths(sized)[4]
 
 
 def test_a_body_is_a_barrier_from_a_mass_on() -> None:

@@ -23,7 +23,8 @@ pytestmark = [
     pytest.mark.skipif(not shutil.which("chromedriver"), reason="there is no chromedriver"),
 ]
 TOKEN = "token-of-the-tests"
-TAB, ENTER = "\ue004", "\ue007"
+TAB = "\ue004"
+ENTER = "\ue007"
 OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu")
 
 

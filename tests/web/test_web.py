@@ -124,11 +124,11 @@ def test_a_large_body_is_refused_at_once(port: int) -> None:
 def test_many_connections_are_answered(port: int) -> None:
     def ask_often(_: int) -> int:
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
-        answered = 0
+        count = 0
         for _ in range(5):
             connection.request("GET", f"/{TOKEN}/static/web.css")
-            answered += len(connection.getresponse().read()) > 100
-        return answered
+            count += len(connection.getresponse().read()) > 100
+        return count
 
     with ThreadPoolExecutor(60) as pool:
         assert sum(pool.map(ask_often, range(60))) == 300
@@ -173,10 +173,10 @@ def test_a_file_is_opened_and_saved(client: Client) -> None:
     form |= dict(
         re.findall(r'<option value="(?!planar)(\w+)" selected', page) and [("axes", "sae")]
     )
-    more = re.search(r"<textarea[^>]*>(.*?)</textarea>", page, re.DOTALL)[1]
-    saved = client.post("scene", **form | {"units": "metric", "more": unescape(more)})
-    assert "attachment" in saved.headers["Content-Disposition"]
-    assert Case.loads(saved.text).written == {"M": "6"} | case.written
+    entries = re.search(r"<textarea[^>]*>(.*?)</textarea>", page, re.DOTALL)[1]
+    file_answer = client.post("scene", **form | {"units": "metric", "more": unescape(entries)})
+    assert "attachment" in file_answer.headers["Content-Disposition"]
+    assert Case.loads(file_answer.text).written == {"M": "6"} | case.written
 
 
 @pytest.mark.parametrize("kind", ["intersection", "rear-end", "head-on", "planar"])
@@ -223,8 +223,8 @@ def test_the_1988_page_is_the_programs(client: Client) -> None:
     scene = impact88.sample(2)
     form = client.get("1988?sample=2").text
     inputs = dict(re.findall(r'<input name="(\w+)" value="([^"]*)"', form))
-    printed = client.post("printed", **inputs).text
-    page = re.search(r"<pre[^>]*>(.*?)</pre>", printed, re.DOTALL)[1]
+    answer = client.post("printed", **inputs).text
+    page = re.search(r"<pre[^>]*>(.*?)</pre>", answer, re.DOTALL)[1]
     assert page == impact88.run(scene).page
 
 

@@ -27,26 +27,25 @@ from ..names import (
     missing,
     quantity,
 )
-from .rounding import decimals_in, rounded
+from .rounding import decimals_in, round_number
 
 if TYPE_CHECKING:
     from ..reconstruction.answer import Reconstruction
 
-CHANGES = ("DVA", "PDOFA", "DVB", "PDOFB")
-SPEEDS_AFTER = ("SAF", "HAF", "SBF", "HBF")
-FORWARD = (*CHANGES, *FINAL_VELOCITIES, *SPEEDS_AFTER, "LOSS", "VC", "MUC")
+CHANGES = tuple("DVA PDOFA DVB PDOFB".split())
+AFTER = tuple("SAF HAF SBF HBF".split())
+FORWARD = (*CHANGES, *FINAL_VELOCITIES, *AFTER, "LOSS", "VC", "MUC")
 """Results of a forward question, the most asked first."""
-SPINS = ("WA", "WB", "WAF", "WBF")
-BACKWARD = ("SA", "HA", "SB", "HB", *SPEEDS_AFTER, *CHANGES, "E", "MUP", "EM", *SPINS, "LOSS")
+BACKWARD = (*"SA HA SB HB".split(), *AFTER, *CHANGES, *"E MUP EM WA WB WAF WBF LOSS".split())
 """Results of a reconstruction, the most asked first."""
-COMPONENTS = ("DVAF", "DVAR", "DVBF", "DVBR", "P", "RR0", "EL", "DT", "CAX", "CAY", "CBX", "CBY")
+COMPONENTS = "DVAF DVAR DVBF DVBR P RR0 EL DT CAX CAY CBX CBY".split()
 ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
+POINTS = "CAF CAL CBF CBL".split()
 UNUSABLE = (
     "no impact has these values; expected masses and inertias above 0, and at most one barrier "
     "(MB = inf, IB = inf), at rest"
 )
-POINTS = ("CAF", "CAL", "CBF", "CBL")
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
 NOISE = 1e-9  # width of an interval over the value: so much is rounding
@@ -179,7 +178,7 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
         return _forward(case, names, seed)
     exact = [name for name, amount in case.entries.items() if not amount.varies]
     names = tuple(wanted) or (ALL if full else tuple(n for n in BACKWARD if n not in exact))
-    return _reconstructed(case, names, seed)
+    return _reconstruct(case, names, seed)
 
 
 def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
@@ -188,23 +187,23 @@ def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
     numbers = {name: float(value) for name, value in values.items()}
     if numbers.pop("fit", 1.0) == 0:
         raise UserError(UNUSABLE, case.source)
-    shown = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
-    absent = [name for name in names if name not in shown]
-    inputs = dict.fromkeys(name for result in absent for name in lacking.get(result, ()))
+    results = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
+    absent = [name for name in names if name not in results]
+    inputs = dict.fromkeys(name for n in absent for name in lacking.get(n, ()))
     reason = missing([*inputs]) if inputs else "not defined for this impact"
     remarks = [f"{' '.join(absent)} left out: {reason}"] if absent else []
     answer = Answer(
         "forward",
         "velocities after the impact, from a complete scene",
         given_of(case),
-        numbers_of(case, shown),
+        numbers_of(case, results),
         case,
         possible=not int(numbers["STATUS"]) & status.IMPOSSIBLE,
         remarks=(*case.remarks, *remarks),
         warnings=tuple(status.sentences(int(numbers["STATUS"]))),
         scene={**case.numbers, **numbers},
     )
-    return _with_bounds(answer, shown, seed) if case.ranges else answer
+    return _with_bounds(answer, results, seed) if case.ranges else answer
 
 
 def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answer:
@@ -218,10 +217,10 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         for name, amount in sorted(case.entries.items())
     }
     outputs = [name for name in values if name in BOUNDED]
-    drawn = bounds(inputs, outputs, samples=DRAWS, seed=seed, correlations=case.correlations)
+    sample = bounds(inputs, outputs, samples=DRAWS, seed=seed, correlations=case.correlations)
     varying = {
         name: bound
-        for name, bound in drawn.outputs.items()
+        for name, bound in sample.outputs.items()
         if bound.upper - bound.lower > NOISE * abs(bound.nominal)
     }
     fractions: dict[str, dict[str, float]] = {}
@@ -231,7 +230,7 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         fractions[name] = {n: square / total for n, square in squares.items()}
     warnings = [
         f"in {100 * fraction:.2g} % of the draws {words}"
-        for name, fraction in drawn.warnings.items()
+        for name, fraction in sample.warnings.items()
         if (words := status.WORDS[status.Status[name]]) not in answer.warnings
     ]
     return replace(
@@ -254,9 +253,9 @@ def _dependences(fractions: Mapping[str, Mapping[str, float]]) -> tuple[str, ...
     """
     results: dict[str, list[str]] = {}
     for result, parts in fractions.items():
-        ranked = sorted(parts, key=lambda name: -parts[name])[:MAX_DRIVERS]
-        named = [n for n in ranked if parts[n] >= MIN_SHARE and [*parts] != [result]]
-        words = ", ".join(f"{name} {100 * parts[name]:.0f} %" for name in named)
+        largest = sorted(parts, key=lambda name: -parts[name])[:MAX_DRIVERS]
+        inputs = [n for n in largest if parts[n] >= MIN_SHARE and [*parts] != [result]]
+        words = ", ".join(f"{name} {100 * parts[name]:.0f} %" for name in inputs)
         results.setdefault(words, []).append(result)
     return tuple(f"{' '.join(names)}: {words}" for words, names in results.items() if words)
 
@@ -295,10 +294,10 @@ def numbers_of(
         90 % intervals of some of them, in base units.
     """
     rows = {}
-    shown = {name: float(case.view.shown(name, value)) for name, value in values.items()}
-    for name, value in shown.items():
+    numbers = {name: float(case.view.shown(name, value)) for name, value in values.items()}
+    for name, value in numbers.items():
         rule = quantity(name).unit
-        group = [x for n, x in shown.items() if quantity(n).unit == rule]
+        group = [x for n, x in numbers.items() if quantity(n).unit == rule]
         decimals, ends, interval = decimals_in(rule, group), None, ""
         if intervals and name in intervals:
             low, high = case.view.shown_ends(name, *intervals[name])
@@ -306,8 +305,8 @@ def numbers_of(
                 turns = 360.0 * round((value - (low + high) / 2) / 360.0)
                 low, high = low + turns, high + turns
             decimals, ends = decimals_in(rule, group, high - low), (low, high)
-            interval = f"{rounded(low, decimals)} .. {rounded(high, decimals)}"
-        text, is_known = rounded(value, decimals), not math.isnan(value)
+            interval = f"{round_number(low, decimals)} .. {round_number(high, decimals)}"
+        text, is_known = round_number(value, decimals), not math.isnan(value)
         note = clock(value) if name.startswith("PDOF") and is_known else ""
         exact = value if is_known else None
         meaning = case.view.meaning(name)
@@ -327,25 +326,25 @@ def clock(degrees: float) -> str:
     return f"{hour or 12} o'clock"
 
 
-def _reconstructed(case: Case, names: Iterable[str], seed: int) -> Answer:
+def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
     """Return the impact that agrees best with what is known, with its alternatives."""
     from ..reconstruction.answer import KNOWABLE, reconstruct
 
     # random draws do not depend on the file's order
-    known = {name: amount for name, amount in sorted(case.entries.items()) if name != "TF"}
-    check_names(known, KNOWABLE, "value that a reconstruction can use", case.source)
+    entries = {name: amount for name, amount in sorted(case.entries.items()) if name != "TF"}
+    check_names(entries, KNOWABLE, "value that a reconstruction can use", case.source)
     duration = case.entries["TF"].value if "TF" in case.entries else None
     try:
-        impacts = reconstruct(known, samples=DRAWS, seed=seed, contact_time=duration)
+        impacts = reconstruct(entries, samples=DRAWS, seed=seed, contact_time=duration)
     except UserError as error:
         raise UserError(str(error), case.source) from None
-    first, *others = [_impact(case, impact, names) for impact in impacts]
-    reasons = [other.warnings[0] for other in others if first.possible > other.possible]
-    rejected = tuple(reason.partition(": ")[2] or reason for reason in reasons)
+    first, *alternatives = [_impact(case, impact, names) for impact in impacts]
+    reasons = [answer.warnings[0] for answer in alternatives if first.possible > answer.possible]
+    refusals = tuple(reason.partition(": ")[2] or reason for reason in reasons)
     return replace(
         first,
-        sections={**first.sections, "rejected": rejected},
-        alternatives=tuple(other for other in others if other.possible),
+        sections={**first.sections, "rejected": refusals},
+        alternatives=tuple(answer for answer in alternatives if answer.possible),
     )
 
 
@@ -360,24 +359,24 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         if not impact.is_adverse:
             bits = int(evaluate(impact.scene(), ("STATUS",))[0]["STATUS"])
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
-    checked = impact.tests if impact.evidence.redundancy else ()
-    shown = [name for name in names if name in values or name in impact.intervals]
+    tests = impact.tests if impact.evidence.redundancy else ()
+    results = [name for name in names if name in values or name in impact.intervals]
     fractions = {
         result: {words.entry(impact, name): x for name, x in parts.items()}
         for result, parts in impact.drivers.items()
-        if result in shown
+        if result in results
     }
     return Answer(
         "reconstruct",
         words.question(impact),
         given_of(case),
-        numbers_of(case, {n: values.get(n, math.nan) for n in shown}, impact.intervals),
+        numbers_of(case, {n: values.get(n, math.nan) for n in results}, impact.intervals),
         case,
         evidence=words.evidence(impact, view),
         possible=not impact.is_adverse,
         sections={
             "depends": _dependences(fractions),
-            "checked": tuple(words.check(impact, name, view) for name in checked),
+            "checked": tuple(words.check(impact, name, view) for name in tests),
             "assumed": words.assumptions(impact),
             "helps": words.advice(impact),
         },
@@ -397,7 +396,8 @@ def scene_case(answer: Answer) -> Case:
     case, scene = answer.case, answer.scene
     if absent := [name for name in SCENE if name not in scene]:
         raise UserError(f"the impact found leaves inputs open: {missing(absent)}", case.source)
-    kept = [n for n in SCENE if n in case.written and n not in case.ranges]
-    changes = dict.fromkeys((n for n in INPUTS if n not in case.sizes), "")
-    changes |= {name: case.view.shown_text(name, scene[name]) for name in SCENE}
-    return case.with_({name: text for name, text in changes.items() if name not in kept})
+    changes = {name: "" for name in case.entries if name not in SCENE}
+    for name in SCENE:
+        if name in case.ranges or name not in case.written:
+            changes[name] = case.view.shown_text(name, scene[name])
+    return case.with_(changes)

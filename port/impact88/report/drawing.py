@@ -33,7 +33,8 @@ CLASSES = (
     (math.inf, "a barrier", 0.7, 7.0),
 )
 """Classes of bodies: largest mass in kg, words, usual length and width in m."""
-BARRIER, DISC = "a barrier", "a disc (point mass)"
+BARRIER = "a barrier"
+DISC = "a disc (point mass)"
 UNKNOWN_MASS = 1500.0  # kg: a body whose mass is not known is drawn as a car
 
 REACH = 150.0  # px from the contact point to the farthest point of a body

@@ -57,12 +57,12 @@ def decimals_in(rule: str, group: Iterable[float], width: float = 0.0) -> int:
     return min(decimals_of(width / 2, OF_INTERVAL), decimals + EXTRA)
 
 
-def rounded(value: float, decimals: int) -> str:
+def round_number(value: float, decimals: int) -> str:
     """Return a number with a number of decimals, as everywhere: without -0, "" for NaN.
 
     Examples
     --------
-    >>> rounded(-0.001, 2), rounded(123456.0, -2), rounded(2.5e-12, 15)
+    >>> round_number(-0.001, 2), round_number(123456.0, -2), round_number(2.5e-12, 15)
     ('0.00', '123500', '2.500e-12')
     """
     if math.isnan(value):

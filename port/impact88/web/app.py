@@ -43,8 +43,8 @@ def application(port: int, token: str) -> Flask:
     app.jinja_options = {"trim_blocks": True, "lstrip_blocks": True}
     app.jinja_loader = ChoiceLoader([app.jinja_loader, reports.loader])  # type: ignore[list-item]
     app.jinja_env.filters.update(reports.filters)
-    shown = {"root": f"/{token}", "inputs": INPUTS, "kinds": KINDS, "headings": HEADINGS}
-    app.jinja_env.globals.update(reports.globals, **shown)
+    context = {"root": f"/{token}", "inputs": INPUTS, "kinds": KINDS, "headings": HEADINGS}
+    app.jinja_env.globals.update(reports.globals, **context)
 
     @app.before_request
     def check() -> None:
