@@ -126,15 +126,15 @@ def decoding(path: str, message: str = "cannot be read") -> Iterator[None]:
     Raises
     ------
     UserError
-        For any exception except MemoryError and BrokenPipeError, which have other causes.
+        For any exception except those that have other causes, such as MemoryError.
     """
     try:
         yield
-    except (UserError, MemoryError, BrokenPipeError):
+    except (UserError, MemoryError, BrokenPipeError, KeyboardInterrupt, SystemExit):
         raise
-    except Exception as error:
-        if isinstance(error, OSError) and error.strerror:
-            raise UserError(f"cannot be read: {error.strerror}", path) from None
+    except BaseException as error:  # a panic of a library in Rust is no Exception
+        if why := getattr(error, "strerror", None):
+            raise UserError(f"cannot be read: {why}", path) from None
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise UserError(f"{message}: {reason}", path) from None
 

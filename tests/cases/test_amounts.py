@@ -74,13 +74,6 @@ def test_refused(name: str, text: str, reason: str) -> None:
     assert reason in str(error.value)
 
 
-def test_comma_depends_on_the_unit_shown() -> None:
-    assert read("UX", "1,234", US).value == pytest.approx(1234 * 22 / 15)
-    for view in (View("metric"), PLAIN):
-        with pytest.raises(UserError, match="decimal"):
-            read("UX", "1,234", view)
-
-
 def test_percentage_of_a_compass_heading_is_of_the_heading() -> None:
     amount = read("TA", "271 +- 1 %", View(headings="compass"))
     view = View(headings="compass")

@@ -9,17 +9,8 @@ import impact88
 from impact88.cases import TEMPLATES, Case, View, template
 from impact88.errors import UserError
 
-REAR_END = """
-units = "us"
-M = 4
-MA = 3000
-MB = 2000
-UX = -30
-UY = 0
-VX = 10
-VY = 0
-E = 0.2
-"""
+REAR_END = {"units": "us", "M": 4, "MA": 3000, "MB": 2000, "E": 0.2}
+REAR_END |= {"UX": -30, "UY": 0, "VX": 10, "VY": 0}
 
 
 def refusal(text: str) -> str:
@@ -67,8 +58,6 @@ def test_files(tmp_path: Path) -> None:
     case = Case.load(str(path))
     assert case.date == "1988-02-29"
     assert (case.title, case.texts) == ("é", {"MU": "0.911", "M": "6"})
-    with pytest.raises(UserError, match=r"missing\.toml: cannot be read"):
-        Case.load(str(tmp_path / "missing.toml"))
     path.write_bytes(b"\xff\xfe\xff")
     with pytest.raises(UserError, match=r"crash\.toml"):
         Case.load(str(path))
@@ -92,9 +81,8 @@ def test_with_is_the_edited_file() -> None:
     in_feet = Case.of({"units": "chapter", "UX": 44}).with_(UX="+- 2 mph")
     assert in_feet.entries["UX"].low == pytest.approx(44 - 2 * 22 / 15)
     assert case.with_(DA="+- 10 %").entries["DA"].low == 4.5
-    assert case.with_(UX="28 .. 36").with_(UX="+- 1").entries["UX"].value == pytest.approx(
-        32 * 22 / 15
-    )
+    uncertain = case.with_(UX="28 .. 36").with_(UX="+- 1")
+    assert uncertain.entries["UX"].value == pytest.approx(32 * 22 / 15)
     assert "UX" not in case.with_(UX="").entries
     assert case.sources == {"UX": "EDR"}
     assert not case.with_(UX="3").sources
@@ -146,13 +134,12 @@ def test_course_and_contact_point() -> None:
 
 
 def test_point_masses_along_one_line_need_no_plane() -> None:
-    case = Case.loads(REAR_END)
+    case = Case.of(REAR_END)
     assert (case.texts["GA"], case.texts["MU"]) == ("0", "0")
     assert "the motion is along one line" in case.remarks[0]
     assert "DA" in case.omitted
     assert (case.texts["DA"], case.texts["IA"]) == ("0", "1")
-    other_way = case.with_(UX="5", VX="20")
-    assert other_way.texts["GA"] == "0"
+    assert case.with_(UX="5", VX="20").texts["GA"] == "0"
     assert case.with_(UX="20", VX="5").texts["GA"] == "180"
     courses = Case.of({"M": 4, "HA": 0, "HB": 0, "SB": 10, "SAF": 3, "HAF": 0})
     assert courses.texts["GA"] == "180"
@@ -163,10 +150,6 @@ def test_point_masses_along_one_line_need_no_plane() -> None:
     assert (pivot.texts["MU"], pivot.texts["GA"]) == ("-10", "0")
     for changes in ({"M": "6"}, {"UY": "1"}, {"UY": "0 +- 1"}, {"GA": "5"}, {"PDOFA": "5"}):
         assert not any("along one line" in remark for remark in case.with_(changes).remarks)
-
-
-def test_barriers_are_numbers_that_cannot_be_typed() -> None:
-    assert Case.of({"MB": "inf", "IB": math.inf}).numbers["MB"] == math.inf
 
 
 def test_friction_as_a_share_of_the_critical() -> None:

@@ -163,7 +163,7 @@ class Amount:
         """
         if factor == 1 and not offset:
             return self
-        value = exact(self.text) if self.text else self.value
+        value = exact(self.text) if self.text and self.value else self.value
         points = (self.low, value, self.high) if self.varies else (value,) * 3
         return _image(self.kind, points, self.sd, self.text, self.share, (factor, offset))
 
@@ -180,10 +180,14 @@ def _image(
     digits stay where no more than the sign changes. Raises OverflowError beyond the range of
     doubles."""
     factor, offset = affine_map
-    first, value, last = (
-        float(offset + factor * Fraction(x)) if math.isfinite(x) else math.copysign(x, x * factor)
-        for x in points
-    )
+
+    def image(x: Fraction | float) -> float:
+        if isinstance(x, float) and not math.isfinite(x):
+            return math.copysign(x, x * factor)
+        return float(offset + factor * (x if isinstance(x, Fraction) else Fraction(x)))
+
+    value = image(points[1])
+    first, last = (value, value) if kind == "exact" else (image(points[0]), image(points[2]))
     if offset or abs(factor) != 1:
         text = ""
     elif text and factor < 0 and value:
@@ -250,7 +254,10 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
             return _skid(name, words, view)
         if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
             return Amount.exactly(math.inf)  # a barrier
-        amount = _amount(name, *parse(quantity(name).unit, words), view, unit)
+        if is_number(words) and not re.search(r"\d \d", words):  # as INPUT takes it: "." is 0
+            amount = _plain(name, words.replace(" ", ""), view, unit)
+        else:
+            amount = _amount(name, *parse(quantity(name).unit, words), view, unit)
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except OverflowError:
@@ -309,8 +316,6 @@ def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
 def _number(rule: str, text: str) -> Number:
     """Return the one number of a text. Raises ValueError."""
     words = text.strip()
-    if is_number(words) and not re.search(r"\d \d", words):  # as INPUT takes it: "." is 0
-        return Number(_fraction(words), "", words.replace(" ", ""))
     if rule == LENGTH and (match := _FEET.fullmatch(words)):
         inches = 12 * _fraction(match[2]) + _fraction(match[3])
         return Number(-inches if match[1] == "-" else inches, "in", "")
@@ -329,6 +334,17 @@ def _fraction(digits: str) -> Fraction:
     if math.isinf(value):
         raise OverflowError
     return exact(plain) if value else Fraction(0)
+
+
+def _plain(name: str, digits: str, view: View, unit: str) -> Amount:
+    """Return the amount of a number without unit and tolerance. Raises OverflowError beyond the
+    range of doubles."""
+    value = to_double(digits)
+    if math.isinf(value):
+        raise OverflowError
+    if name == "MUP" and value == PIVOT:  # the pivot's mark has no direction
+        return Amount.exactly(value, digits)
+    return Amount.exactly(value, digits).mapped(*view.map(name, unit))
 
 
 def _amount(name: str, kind: str, numbers: Sequence[Number], view: View, unit: str) -> Amount:
@@ -365,8 +381,6 @@ def _amount(name: str, kind: str, numbers: Sequence[Number], view: View, unit: s
         raise UserError("expected the lower limit first, and no negative tolerance")
     text = numbers[1 if kind == "triangular" else 0].digits if kind != "uniform" else ""
     factor, offset = view.map(name, common)
-    if name == "MUP" and first == PIVOT:
-        factor = abs(factor)  # the pivot's mark has no direction
     text = re.sub("[, ]", "", text)
     return _image(distribution, points, sd, text, name == "MU" and "%" in units, (factor, offset))
 

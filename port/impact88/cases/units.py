@@ -230,6 +230,7 @@ class View:
         """Return the entries of a file with this view, without defaults."""
         return {name: word for name, word in asdict(self).items() if word}
 
+    @lru_cache(maxsize=256)  # noqa: B019 - views are few, and equal ones share an entry
     def base_size(self, rule: str) -> Fraction:
         """Return the size of the base unit of a rule in m, kg, s."""
         if rule not in DIMENSIONS or not self.units:

@@ -307,10 +307,11 @@ class _Rows:
         case = Case.of({**solver.case.written, **cells}, where, solver.view)
         if case.view != solver.view:
             raise UserError("has units; expected them in the headings, or --units", where)
+        ranges = {*case.ranges} & {*cells}
         for name in SCENE:
             if name not in case.texts:
                 raise UserError(f"{name} is empty; expected a number", where)
-            if name in cells and name in case.ranges:
+            if name in ranges:
                 raise UserError(f"{name} = {quoted(cells[name])}: expected one number", where)
             if solver.is_applesoft and case.texts[name] == "INF":
                 raise UserError(f"{name} = inf cannot be typed; expected a number", where)
@@ -346,7 +347,8 @@ class _Rows:
             factor, offset = solver.view.map(name, solver.columns[name][1])
             is_base = factor == 1 and not offset
             texts = [
-                x.strip().upper() if isinstance(x, str) else to_text(x) for x in self.cells(name)
+                x.strip().upper() if isinstance(x, str) else to_text(float(x))
+                for x in self.cells(name)
             ]
         else:
             is_base = True
