@@ -44,7 +44,7 @@ def refusal(text: str) -> str:
         ("SAF = -30", "SAF = '-30': a speed is not negative; expected HAF turned by 180"),
         ('SA = "skid 60 ft"', "expected distance, unit and friction, such as skid 60 ft at 0.7"),
         ('IA = "estimate"', "IA = estimate needs MA"),
-        ('MA = 9\nLA = 15\nIA = "estimate"', "needs LA and BA, or none of them"),
+        ('MA = 9\nLA = 15\nIA = "estimate"', "expected IA, or LA and BA"),
         ('MA = 90\nIA = "estimate"', 'with units = "us"'),
     ],
 )

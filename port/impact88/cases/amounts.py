@@ -184,7 +184,7 @@ def _image(
     def image(x: Fraction | float) -> float:
         if isinstance(x, float) and not math.isfinite(x):
             return math.copysign(x, x * factor)
-        return float(offset + factor * (x if isinstance(x, Fraction) else Fraction(x)))
+        return float(offset + factor * Fraction(x))
 
     value = image(points[1])
     first, last = (value, value) if kind == "exact" else (image(points[0]), image(points[2]))
@@ -247,9 +247,9 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
     """
     words = normalize(text)
     entry = f"{name} = {quoted(words)}"
-    if len(words) > MAX_LENGTH:
-        raise UserError(f"{entry} is longer than {MAX_LENGTH} characters; expected an amount")
     try:
+        if len(words) > MAX_LENGTH:
+            raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
         if words.startswith("skid"):
             return _skid(name, words, view)
         if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):

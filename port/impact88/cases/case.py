@@ -175,9 +175,9 @@ class Case:
         sources = {n.removesuffix(SOURCE): t for n, t in entered.items() if n.endswith(SOURCE)}
         for name in (*quantities, *sources):
             if name not in INPUTS:
-                fault = f"{quoted(name)} is not an entry of a scene"
                 hint = did_you_mean(name, (*INPUTS, *ABOUT))
-                raise UserError(fault + hint, places.get(name, source))
+                fault = f"{quoted(name)} is not an entry of a scene{hint}"
+                raise UserError(fault, places.get(name, source))
         words = {n: t for n, t in entered.items() if n in ("units", "axes", "headings")}
         file_view = View.of(source, **{**view.words(), **words})
         try:
@@ -249,11 +249,11 @@ class Case:
 
     def _middle(self, name: str) -> str:
         """Return the present value of an entry as text, to put a tolerance around."""
-        text, amount = str(self.written.get(name, "")), self.entries.get(name)
+        text, amount = self.written.get(name, ""), self.entries.get(name)
         if text.startswith(ESTIMATE):
             return ESTIMATE
         if amount is None or amount.share:
-            return text or "0" * name.startswith("C")  # a move of the contact point
+            return text
         return f"{self.view.shown_text(name, amount.value)} {self.view.unit(name)}"
 
     @property
@@ -276,8 +276,9 @@ class Case:
             For a text other than ``"UX,VX 0.5; MA,IA 0.9"``.
         """
         pairs: dict[tuple[str, str], float] = {}
-        text = str(self.written.get("correlations", ""))
-        for part in text.split(";") if text else ():
+        for part in self.written.get("correlations", "").split(";"):
+            if not part.strip():
+                continue
             try:
                 first, second, number = part.replace(",", " ").split()
                 pairs[first, second] = float(number)
@@ -329,7 +330,7 @@ def _read_entries(
             if is_inferred and is_measured and not units_in(name, given[name]):
                 raise UserError(
                     f"{name} = {text} has no unit, and other values have; add one, or "
-                    f'units = "{view.units}" for numbers without (--units {view.units})'
+                    f'units = "{view.units}" (--units) for numbers without'
                 )
         except UserError as error:
             raise UserError(str(error), places.get(name)) from None

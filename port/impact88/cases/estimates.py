@@ -74,13 +74,11 @@ def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str,
         raise UserError(f"{name} = {ESTIMATE} needs M{vehicle} above 0")
     pair, pounds = SIZES[vehicle], weight(mass.value, view)
     sizes = [amounts[size].value for size in pair if size in amounts]
-    if len(sizes) == 1:
-        raise UserError(f"{name} = {ESTIMATE} needs {pair[0]} and {pair[1]}, or none of them")
-    if not sizes and not (view.units and is_car(pounds)):
+    if len(sizes) == 1 or not (sizes or (view.units and is_car(pounds))):
         raise UserError(
             f"{name} = {ESTIMATE} from the weight is for passenger cars of {MIN_WEIGHT:,} to "
-            f'{MAX_WEIGHT:,} lb, with units = "us" or another; expected {name}, or {pair[0]} and '
-            f"{pair[1]}"
+            f'{MAX_WEIGHT:,} lb, with units = "us" or another; expected {name}, or '
+            f"{' and '.join(pair)}"
         )
     rule = (
         f"M{vehicle} (L{vehicle}² + B{vehicle}²)/12, a uniform rectangle; "

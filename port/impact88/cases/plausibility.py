@@ -74,9 +74,9 @@ def implausible(
             front = heading + 180.0 * (vehicle == "A")
             sideslip = abs((courses[vehicle] - front + 180.0) % 360.0 - 180.0)
             words = (
-                f"{vehicle} moves more than 45° off the way it faces "
-                f"({'A faces TA + 180' if vehicle == 'A' else 'B faces TB'} in the listing's "
-                "axes); are velocities and headings in one convention? (axes, headings)"
+                f"{vehicle} moves more than 45° off the way it faces (A faces TA + 180 and B faces "
+                "TB in the listing's axes); are velocities and headings in one convention? (axes, "
+                "headings)"
             )
             yield Remark(f"T{vehicle}", (sideslip > MAX_SIDESLIP) & has_size, words)
     if "EM" in values:
@@ -97,4 +97,3 @@ def impossible(values: Mapping[str, Any]) -> Iterator[Remark]:
         yield Remark(
             name, is_fixed & moves, f"is not 0, and {inertia} is infinite: a barrier rests"
         )
-    yield Remark("MB", (values["MA"] == inf) & (values["MB"] == inf), "is infinite, and so is MA")

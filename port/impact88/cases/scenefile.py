@@ -57,8 +57,9 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
         raise UserError(f"is not TOML: {error}; {advice}", source) from None
     except (RecursionError, ValueError):  # nested deeply; a whole number of 4,300 digits
         raise UserError("is not a scene; expected one NAME = VALUE a line", source) from None
-    matches = {number: _KEY.match(line) for number, line in enumerate(lines, 1)}
-    places = {match[1]: number for number, match in matches.items() if match}
+    places = {
+        match[1]: number for number, line in enumerate(lines, 1) if (match := _KEY.match(line))
+    }
     for name, value in values.items():
         is_date = name in ABOUT and isinstance(value, datetime.date)
         if isinstance(value, bool) or not (is_date or isinstance(value, str | int)):

@@ -296,7 +296,7 @@ class View:
     def shown_ends(self, name: str, low: float, high: float) -> tuple[float, float]:
         """Return two limits as shown, the lower first; directions are not reduced to one turn."""
         factor, offset = (float(x) for x in self.map(name))
-        first, second = sorted((float(end) - offset) / factor for end in (low, high))
+        first, second = sorted((end - offset) / factor for end in (low, high))
         return first, second
 
     def _turns(self, name: str) -> bool:

@@ -63,8 +63,9 @@ class Solved:
 
     def messages(self) -> list[str]:
         """Return the bad rows listed, and how many there are if they are not all listed."""
-        is_more = self.bad > len(self.listed)
-        return self.listed + [f"{self.bad:,} rows could not be used, these first"] * is_more
+        if self.bad == len(self.listed):
+            return self.listed
+        return [*self.listed, f"{self.bad:,} rows could not be used, these first"]
 
 
 def solve_table(
@@ -279,7 +280,7 @@ class _Rows:
             )
             is_other |= ~np.isfinite(shown)
             if solver.is_applesoft:
-                lengths = [len(x) if isinstance(x, str) else 0 for x in self.cells(name)]
+                lengths = [len(str(cell)) for cell in self.cells(name)]
                 is_other |= np.array(lengths, int) > MAX_LENGTH
         for name in solver.lacking:
             default = float(POINT_DEFAULTS[name])
