@@ -176,7 +176,7 @@ class TestTables:
 
     def test_a_comparison_is_text_and_json(self) -> None:
         comparison = impact88.compare({**impact88.sample(1), "VAX": "-13.2", "KI": "1"})
-        assert "NOT PASSED" in str(comparison)
+        first = "NOT PASSED: rows 1, agreeing 0, disagreeing 1, without numbers to compare 0\n"
+        assert str(comparison).startswith(first)
         fields = words.as_json(comparison)
-        assert fields["schema"] == words.SCHEMA
         assert fields["disagreements"][0]["theirs"] == "-13.2"

@@ -9,11 +9,16 @@ those of the final velocities against 50 digits (needs pip install 'impact88[ora
 
 from __future__ import annotations
 
+from itertools import count
+
 from ..errors import library
 from .options import JSON, OUTPUT, Args, flag
 from .output import progress, show
 
-QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT = 100, 3, 0.05
+# of --quick
+QUICK_SCENES = 100
+QUICK_REPEATS = 3
+QUICK_EFFORT = 0.05  # of the scenes that are timed
 OPTIONS = (flag("--quick", "fewer scenes and repeats"), JSON, OUTPUT)
 
 
@@ -22,19 +27,12 @@ def main(args: Args) -> None:
     library("mpmath", "oracle", "the reference")
     from ..bench import benchmark as bench
 
-    where = bench.computer()
+    computer = bench.computer()
     scenes, repeats, effort = bench.ERROR_SCENES, bench.REPEATS, 1.0
     if args.quick:
         scenes, repeats, effort = QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT
-    done, steps = 0, bench.count_steps(repeats)
+    steps, total = count(1), bench.count_steps(repeats)
     with progress("bench") as update:
-
-        def step() -> None:
-            nonlocal done
-            done += 1
-            update(done, done / steps)
-
-        rows = bench.measure(step, scenes, repeats, effort)
-    page = bench.markdown(rows, where)
-    record = {"computer": where, "measurements": [row._asdict() for row in rows]}
-    show(args.json, "bench", record, [page])
+        rows = bench.measure(lambda: update(0, next(steps) / total), scenes, repeats, effort)
+    record = {"computer": computer, "measurements": [row._asdict() for row in rows]}
+    show(args.json, "bench", record, [bench.markdown(rows, computer)])

@@ -68,65 +68,64 @@ def _answer(case: Case, question: str, results: Values, *remarks: str) -> Answer
     )
 
 
-def _colinear(case: Case, known: Values, like: str) -> Answer:
+def _colinear(case: Case, values: Values, like: str) -> Answer:
     """Return the impact of vehicles that do not turn, forward or backward."""
     from ..chapter.colinear import FINAL, INITIAL, colinear, colinear_inverse
 
-    if ("UN" in known) == ("VAN" in known):
+    if ("UN" in values) == ("VAN" in values):
         raise UserError("expected the velocities before (UN VN) or those after (VAN VBN)")
-    solve, names = (colinear, INITIAL) if "UN" in known else (colinear_inverse, FINAL)
-    if "MUP" not in known:  # nothing acts along t
-        known = {**dict.fromkeys(("MUP", *names[1::2]), 0.0), **known}
-    return _answer(case, "a colinear impact, Equations 9 to 12", solve(known))
+    solve, names = (colinear, INITIAL) if "UN" in values else (colinear_inverse, FINAL)
+    if "MUP" not in values:  # nothing acts along t
+        values = {**dict.fromkeys(("MUP", *names[1::2]), 0.0), **values}
+    return _answer(case, "a colinear impact, Equations 9 to 12", solve(values))
 
 
-def _barrier(case: Case, known: Values, like: str) -> Answer:
+def _barrier(case: Case, values: Values, like: str) -> Answer:
     """Return the impact of vehicle A on a barrier."""
     from ..chapter.barrier import BARRIER
 
     return ask(case.with_({name: f"{value:g}" for name, value in BARRIER.items()}, "barrier"))
 
 
-def _delta_v(case: Case, known: Values, like: str) -> Answer:
-    """Return velocity changes by Equation 19, for one loss or for the range of a category."""
+def _delta_v(case: Case, values: Values, like: str) -> Answer:
+    """Return velocity changes by Equation 19; with ``like`` for the least and the greatest loss of
+    a category of Table 2."""
+    if not like:
+        return _equation_19(case, values)
+    losses = [c.table2["loss"] for c in collisions() if c.category == CATEGORIES[like]]
+    least, greatest = (_equation_19(case, {**values, "LOSS": f(losses)}) for f in (min, max))
+    question = f"{least.question}: least and most in Table 2, {CATEGORIES[like]}"
+    return replace(least, question=question, alternatives=(greatest,))
+
+
+def _equation_19(case: Case, values: Values) -> Answer:
+    """Return the velocity changes that follow from one loss of energy."""
     from ..chapter.deltav import delta_v, loss_of_energy
 
-    question = "velocity changes from the energy lost"
-    if like:
-        alike = [c for c in collisions() if c.category == CATEGORIES[like]]
-        losses = sorted(c.table2["loss"] for c in alike)[:: len(alike) - 1]
-        numbers = ", ".join(str(c.number) for c in alike)
-        question += f", least and most of collisions {numbers} ({CATEGORIES[like]})"
-    elif "EL" in known:
-        losses = [loss_of_energy(known)]
-    else:
-        losses = [known.get("LOSS", -1.0)]
-    if not 0 <= losses[0] <= 100:
-        raise UserError("expected LOSS from 0 to 100 percent, EL as energy, or --like")
-    first, *others = [
-        _answer(case, question, {"LOSS": x, **delta_v({**known, "LOSS": x})}, *EQUATION_19)
-        for x in losses
-    ]
-    return replace(first, alternatives=tuple(others))
+    loss = values["LOSS"] if "LOSS" in values else loss_of_energy(values)
+    if not 0 <= loss <= 100:
+        raise UserError(f"a loss of {loss:.4g} percent; expected 0 to 100")
+    results = {"LOSS": loss, **delta_v({**values, "LOSS": loss})}
+    return _answer(case, "velocity changes from the energy lost", results, *EQUATION_19)
 
 
-def _staged(args: options.Args) -> int:
+def _collision_tables(args: options.Args) -> int:
     """Print tables of the staged collisions."""
     from ..chapter import staged, validation, words
 
-    compared = staged.comparison()
+    cells = staged.comparison()
     record = {
         "problem": "staged",
         "emendations": staged.emendations(),
         "collisions": collisions(),
-        "comparison": compared,
+        "comparison": cells,
         "validation": [check._asdict() for check in validation.checks()],
     }
     lines: Iterable[str] = words.comparison_lines()
     if args.table or args.validation:
         lines = words.table_lines(int(args.table)) if args.table else words.validation_lines()
     show(args.json, "chapter", record, lines)
-    return int(any(cell.explanation == "not explained" for cell in compared))
+    return int(any(cell.explanation == "not explained" for cell in cells))
 
 
 def _example(args: options.Args) -> int:
@@ -140,7 +139,7 @@ def _example(args: options.Args) -> int:
 
 IMPACTS = {"colinear": _colinear, "barrier": _barrier, "delta-v": _delta_v}
 """Problems that are posed by a case."""
-TABLES = {"staged": _staged, "example": _example}
+TABLES = {"staged": _collision_tables, "example": _example}
 OPTIONS = (
     option("problem", choices=(*IMPACTS, *TABLES), help="the problem, see above"),
     *options.CASE,
@@ -157,5 +156,5 @@ def main(args: options.Args) -> int:
     if args.problem in TABLES:
         return TABLES[args.problem](args)
     case = options.case_of(args)
-    known = {name: amount.value for name, amount in case.entries.items()}
-    return show_answer(IMPACTS[args.problem](case, known, args.like), args.json)
+    values = {name: amount.value for name, amount in case.entries.items()}
+    return show_answer(IMPACTS[args.problem](case, values, args.like), args.json)

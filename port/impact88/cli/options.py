@@ -111,10 +111,10 @@ def printing_to(path: str) -> Iterator[None]:
 
 
 def names_of(texts: Sequence[str], allowed: Collection[str], name: str) -> tuple[str, ...]:
-    """Return the names that an option gives, each once. Raises UserError for another name."""
+    """Return the names that an option gives. Raises UserError for another name."""
     words = split_names(",".join(texts).upper())
     check_names(words, allowed, "result", name)
-    return tuple(dict.fromkeys(words))
+    return tuple(words)
 
 
 def pairs_of(texts: Sequence[str], name: str, expected: str) -> dict[str, str]:

@@ -42,15 +42,17 @@ def main(args: Args) -> int:
         return 0
     from ..comparison.oracle import answer_lines
 
-    answered = refused = 0
+    answers = failures = 0
     with progress("oracle") as update, open_bytes(args.scenes) as file:
         lines = (line.decode("utf-8-sig", "replace") for line in file)
         for answer in answer_lines(lines, not args.no_reference):
-            refused += "error" in answer
-            answered += "error" not in answer
+            failures += "error" in answer
+            answers += "error" not in answer
             print(to_json(answer), flush=True)  # a program may ask line by line
-            update(answered, None)
-    if not answered:
-        expected = 'expected lines such as {"id": 1, "scene": {...}}'
-        raise UserError(f"no line can be used; {expected}", display_name(args.scenes))
-    return int(refused > 0)
+            update(answers, None)
+    if not answers:
+        form = '{"id": 1, "scene": {...}}'
+        raise UserError(
+            f"no line can be used; expected lines such as {form}", display_name(args.scenes)
+        )
+    return int(failures > 0)

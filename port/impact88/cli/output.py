@@ -1,13 +1,11 @@
-"""What commands print: JSON with the version of its form, progress, remarks."""
+"""Output of commands: JSON with the version of its form, progress, remarks."""
 
 from __future__ import annotations
 
 import json
-import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from ..errors import note
@@ -23,7 +21,6 @@ FORMS = {
     "bench": 1,
 }
 """Version of each form of JSON. It rises where a field is removed, renamed or changes meaning."""
-PROGRESS_WIDTH = 40  # columns that progress may take
 
 
 def show(is_json: bool, form: str, record: Mapping[str, Any], lines: Iterable[str]) -> None:
@@ -35,22 +32,19 @@ def show(is_json: bool, form: str, record: Mapping[str, Any], lines: Iterable[st
         print("\n".join(lines))
 
 
-def to_json(value: Any) -> str:
-    """Return JSON on one line; numbers that are not finite become null."""
-    return json.dumps(_plain(value))
+def to_json(value: object) -> str:
+    """Return JSON on one line: records as objects, arrays as lists, numbers not finite as null."""
+    text = json.dumps(value, default=_json_value)
+    return json.dumps(json.loads(text, parse_constant=lambda name: None))
 
 
-def _plain(value: Any) -> Any:
-    """Return a value for JSON: records as objects, arrays as lists, numbers not finite as None."""
+def _json_value(value: Any) -> Any:
+    """Return an array as a list, a record or a mapping as a dictionary."""
+    from dataclasses import asdict
+
     if hasattr(value, "tolist"):
-        value = value.tolist()
-    if is_dataclass(value):
-        value = asdict(value)  # type: ignore[arg-type]
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+        return value.tolist()
+    return dict(value) if hasattr(value, "keys") else asdict(value)
 
 
 @contextmanager
@@ -58,17 +52,14 @@ def progress(what: str) -> Iterator[Callable[[int, float | None], None]]:
     """Context of a function that shows the steps done, or the fraction if it is known, on a line of
     stderr; nothing where stderr is no terminal."""
 
-    def overwrite(text: str) -> None:
-        if sys.stderr.isatty():
-            print(f"\r{text:<{PROGRESS_WIDTH}}", end="\r", file=sys.stderr, flush=True)
-
     def update(done: int, fraction: float | None) -> None:
-        overwrite(f"{what}: {done:,}" if fraction is None else f"{what}: {fraction:.0%}")
+        if sys.stderr.isatty():
+            text = f"{done:,}" if fraction is None else f"{fraction:.0%}"
+            print(f"\r{what}: {text}", end="", file=sys.stderr, flush=True)
 
-    try:
-        yield update
-    finally:
-        overwrite("")
+    yield update
+    if sys.stderr.isatty():
+        print(file=sys.stderr)
 
 
 def say(command: str, remarks: Iterable[str]) -> None:

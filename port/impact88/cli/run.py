@@ -65,8 +65,8 @@ def _scene(args: Args) -> Scene:
         case = scene_case(ask(case))
         note("run", f"as impact88 solve finds them: {' '.join(absent)}")
     if case.omitted:
-        typed = [n if case.texts[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
-        note("run", f"0 is typed for what is not given: {' '.join(typed)}")
+        names = [n if case.texts[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
+        note("run", f"0 is typed for what is not given: {' '.join(names)}")
     return Scene(case.texts, None, case.source)
 
 
@@ -76,7 +76,10 @@ def _run_copy(path: str, scene: Scene, arithmetic: str) -> Run:
 
     if arithmetic != "applesoft":
         raise UserError("--listing runs in the emulator; expected --arithmetic applesoft")
-    return ListingCopy(path).run(scene)
+    copy = ListingCopy(path)
+    scene.check_typed()
+    note("run", f"the scene's values, M = {scene['M']} among them, replace those in the copy")
+    return copy.run(scene)
 
 
 def _ask(arithmetic: str) -> Run:

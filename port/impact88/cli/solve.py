@@ -87,7 +87,7 @@ def _solve_table(args: Args, is_table: bool) -> int:
     case = case_of(args) if is_case or not is_table else Case.of({}, view=view)
     ranges = pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT")
     with progress("solve") as update:
-        solved = solve_table(
+        results = solve_table(
             table if is_table else sweep_table(case, ranges),
             args.target,
             names_of(args.outputs, RESULTS, "--outputs"),
@@ -100,6 +100,6 @@ def _solve_table(args: Args, is_table: bool) -> int:
             target_format=args.to,
             progress=update,
         )
-    remarks = dict.fromkeys([*case.remarks, *solved.remarks])
-    say("solve", [*remarks, *solved.messages()])
-    return int(bool(solved.bad or solved.ended))
+    remarks = dict.fromkeys([*case.remarks, *results.remarks])
+    say("solve", [*remarks, *results.messages()])
+    return int(bool(results.bad or results.ended))

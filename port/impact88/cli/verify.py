@@ -52,16 +52,16 @@ OPTIONS = (
 
 def main(args: options.Args) -> int:
     """Verify printouts."""
-    given = None
+    scene = None
     if args.scene:
         from ..cases.case import Case
 
-        given = Case.load(args.scene).texts
+        scene = Case.load(args.scene).texts
     exhibits: list[Exhibit] = []
     failure = None
     for path in (path for name in args.printouts for path in sorted(glob(name)) or [name]):
         try:
-            exhibits += _verified(args, display_name(path), read_bytes(path), given)
+            exhibits += _verify_file(args, display_name(path), read_bytes(path), scene)
         except UserError as error:
             if failure:
                 note("verify", str(failure))
@@ -77,11 +77,11 @@ def main(args: options.Args) -> int:
     return int(any(item.result.verdict is not Verdict.IDENTICAL for item in exhibits))
 
 
-def _verified(
-    args: options.Args, name: str, data: bytes, given: Mapping[str, str] | None
+def _verify_file(
+    args: options.Args, name: str, data: bytes, scene: Mapping[str, str] | None
 ) -> list[Exhibit]:
     """Print and return the printouts of a file."""
-    exhibits = examine(name, data, given, args.listing or "")
+    exhibits = examine(name, data, scene, args.listing or "")
     for exhibit in exhibits:
         lines = words.write(exhibit.result, name, exhibit.number, args.brief)
         record = words.record(exhibit.result, name, exhibit.number, exhibit.digest)

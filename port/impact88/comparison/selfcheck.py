@@ -20,7 +20,6 @@ from ..program.scene import sample
 from ..version import __version__
 
 PUBLISHED_RUNS = {1: "run1", 2: "run2", 3: "table3"}
-SCHEMA = "impact88/selfcheck/2"
 DISK_COMMAND = re.compile(r"^\x04.*\n", re.M)
 Cases = Iterator[tuple[str, bool]]
 """Name of each case, and whether it is as captured."""
@@ -79,7 +78,6 @@ def record(results: list[Check]) -> dict[str, Any]:
         An object for JSON.
     """
     return {
-        "schema": SCHEMA,
         "passed": all(check.passed for check in results),
         "versions": {
             "impact88": __version__,

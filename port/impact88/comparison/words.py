@@ -1,14 +1,11 @@
 """A comparison in words, as JSON and as a JUnit report."""
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 if TYPE_CHECKING:
     from .types import Cause, Comparison, Disagreement
-
-SCHEMA = "impact88/compare/2"
 
 
 def cause_sentences(cause: "Cause") -> list[str]:
@@ -33,32 +30,32 @@ def disagreement_line(item: "Disagreement") -> str:
 def as_text(comparison: "Comparison") -> str:
     """Return a comparison as lines of text."""
     verdict = "PASSED" if comparison.passed else "NOT PASSED"
+    silent = comparison.rows - comparison.agreeing - comparison.differing
     lines = [
-        f"{verdict}: {comparison.rows} rows, {comparison.agreeing} agree, "
-        f"{comparison.differing} disagree"
+        f"{verdict}: rows {comparison.rows}, agreeing {comparison.agreeing}, "
+        f"disagreeing {comparison.differing}, without numbers to compare {silent}"
     ]
-    lines += list(comparison.notes)
+    lines += comparison.notes
     if comparison.differing:
         lines += ["", "Likely cause" if comparison.causes else "No cause was found."]
         for cause in comparison.causes:
             lines += [f"  {line}" for line in cause_sentences(cause)]
-        lines += ["", "Results that disagree"]
-        lines += [f"  {disagreement_line(item)}" for item in comparison.disagreements]
+        results = (f"  {disagreement_line(item)}" for item in comparison.disagreements)
+        lines += ["", "Results that disagree", *results]
     for reason, ids in comparison.kit.get("failed", {}).items():
         shown = ", ".join(ids[:5]) + ", ..." * (len(ids) > 5)
         lines.append(f"{len(ids)} vectors: {reason} ({shown})")
-    if comparison.kit:
-        kit = comparison.kit
+    if kit := comparison.kit:
         lines.append(f"kit {kit['id']}: {kit['passed']} of {kit['vectors']} vectors pass")
     return "\n".join(lines)
 
 
 def as_json(comparison: "Comparison") -> dict[str, Any]:
-    """Return a comparison as JSON types, with the number of their form."""
+    """Return a comparison as JSON types."""
     fields = asdict(comparison)
     for entry, cause in zip(fields["causes"], comparison.causes, strict=True):
         entry["unexplained"] = cause.unexplained
-    return json.loads(json.dumps({"schema": SCHEMA, **fields}))  # type: ignore[no-any-return]
+    return fields
 
 
 def as_junit(comparison: "Comparison", name: str) -> str:
@@ -69,7 +66,7 @@ def as_junit(comparison: "Comparison", name: str) -> str:
         failures |= {f"vector {label}": reason for label in ids}
     if not comparison.passed and not failures:
         failures["table"] = "; ".join(comparison.notes) or "nothing could be compared"
-    cases = [f"<testcase name={quoteattr(f'{comparison.agreeing} rows agree')}/>"]
+    cases = [f"<testcase name={quoteattr(f'rows that agree: {comparison.agreeing}')}/>"]
     cases += [
         f"<testcase name={quoteattr(title)}><failure message={quoteattr(says)}/></testcase>"
         for title, says in failures.items()
