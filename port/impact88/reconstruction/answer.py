@@ -8,7 +8,7 @@ odds with the others has the largest standardized residual (Baarda 1968).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import Any, NamedTuple
@@ -232,7 +232,6 @@ def reconstruct(
     samples: int = 20_000,
     seed: int = 0,
     contact_time: float | None = None,
-    progress: Callable[[float], object] | None = None,
 ) -> list[Reconstruction]:
     """Return every impact found that agrees with what is known, possible ones first.
 
@@ -247,8 +246,6 @@ def reconstruct(
         Random seed.
     contact_time : float, optional
         Duration of contact, for average and peak forces.
-    progress : callable, optional
-        Called with the fraction done.
 
     Returns
     -------
@@ -295,7 +292,7 @@ def reconstruct(
             results[0] = replace(results[0], broken=choice.best.violations())
     if samples and results[0].verdict in ("agrees", "at a limit"):
         fits = [fit for fit, _ in choice.fits]
-        results = _with_draws(results, fits, samples, seed, progress)
+        results = _with_draws(results, fits, samples, seed)
     return results
 
 
@@ -578,17 +575,13 @@ def _rank_of_rows(rows: Sequence[Array]) -> int:
 
 
 def _with_draws(
-    results: Sequence[Reconstruction],
-    fits: Sequence[Fit],
-    samples: int,
-    seed: int,
-    progress: Callable[[float], object] | None,
+    results: Sequence[Reconstruction], fits: Sequence[Fit], samples: int, seed: int
 ) -> list[Reconstruction]:
     """Return results with draws, intervals and bounds, where anything varies."""
     if not any(fit.sensitivity.any() or fit.open_directions.size for fit in fits):
         return list(results)
     draws = {
-        problem: sample(problem, samples, seed, progress=progress)
+        problem: sample(problem, samples, seed)
         for problem in dict.fromkeys(fit.problem for fit in fits)
         if problem.coordinates
     }

@@ -16,6 +16,7 @@ from ..errors import UserError
 Array = NDArray[np.float64]
 
 TABLE_END = 8.3  # standard normal variates beyond occur once in 1e16
+TABLE_SIZE = 8193  # values of a table: quantiles to 1e-7 of the width
 
 
 def uniform(low: float, high: float) -> Amount:
@@ -54,20 +55,12 @@ def from_normal(amount: Amount, variates: Array) -> Array:
 @lru_cache(maxsize=64)
 def _quantile_table(amount: Amount) -> tuple[Array, Array]:
     """Return standard normal variates and the values at the same quantiles."""
-    places, standard = np.linspace(-TABLE_END, TABLE_END, 8193), NormalDist()
-    shares = np.array([standard.cdf(place) for place in places.tolist()])
-    low, high, mode = amount.low, amount.high, amount.value
-    if amount.kind == "uniform":
-        return places, low + shares * (high - low)
-    if amount.kind == "triangular":
-        width, rise = high - low, mode - low
-        left = low + np.sqrt(shares * width * rise)
-        right = high - np.sqrt((1.0 - shares) * width * (width - rise))
-        return places, np.where(shares * width <= rise, left, right)
-    normal = NormalDist(mode, amount.sd)
-    below, above = normal.cdf(low), normal.cdf(high)
-    targets = np.clip(below + shares * (above - below), 1e-300, 1.0 - 1e-16)
-    return places, np.array([normal.inv_cdf(target) for target in targets.tolist()])
+    variates, standard = np.linspace(-TABLE_END, TABLE_END, TABLE_SIZE), NormalDist()
+    shares = [standard.cdf(variate) for variate in variates.tolist()]
+    values = np.linspace(*amount.limits(TABLE_END), TABLE_SIZE)
+    density = np.exp(log_density(amount, values))
+    sums = np.cumsum(density[1:] + density[:-1])  # trapezoidal rule
+    return variates, np.interp(shares, [0.0, *(sums / sums[-1])], values)
 
 
 def correlated(

@@ -9,8 +9,9 @@ affine shape.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -59,12 +60,14 @@ class Sample:
     points: Array
     families: float
 
-    def __post_init__(self) -> None:
-        self._impacts = self.problem.impacts(self.names, self.points)
+    @cached_property
+    def impacts(self) -> Impacts:
+        """The impacts."""
+        return self.problem.impacts(self.names, self.points)
 
     def __getitem__(self, name: str) -> Array:
         """Return the values of a quantity."""
-        return np.broadcast_to(self._impacts[name], len(self.points))
+        return np.broadcast_to(self.impacts[name], len(self.points))
 
     def bounds(self, names: Sequence[str], seed: int = 0) -> dict[str, tuple[float, float]]:
         """Return the least and the greatest values found within all limits."""
@@ -77,15 +80,11 @@ class Sample:
         def table(points: Array) -> Array:
             state = target(points)
             impacts = self.problem.impacts(self.names, points)
-            counts = np.isfinite(state.prior) & state.holds
-            with np.errstate(all="ignore"):
-                columns = [impacts[name] + 0.0 * points[:, 0] for name in names]
-            return np.where(counts[:, None], np.stack(columns, 1), np.nan)
+            is_within = np.isfinite(state.prior) & state.holds
+            return np.stack([np.where(is_within, impacts[name], np.nan) for name in names], 1)
 
         values, _ = extremes(table, self.points, (low, high), rng)
-        return {
-            name: (float(low), float(high)) for name, low, high in zip(names, *values, strict=True)
-        }
+        return dict(zip(names, map(tuple, values.T.tolist()), strict=True))
 
 
 class Target:
@@ -139,35 +138,32 @@ class Target:
 
     def __call__(self, points: Array) -> State:
         """Return points with the log densities of the prior and of the observations."""
-        base = self.log_prior(points)
-        rows = np.flatnonzero(np.isfinite(base))
-        prior, likelihood = np.full(len(points), -np.inf), np.zeros(len(points))
-        holds = np.zeros(len(points), bool)
+        prior = self.log_prior(points)
+        rows = np.flatnonzero(np.isfinite(prior))
         impacts = self.problem.impacts(self.names, points[rows])
-        with np.errstate(all="ignore"):
-            prior[rows] = base[rows] + self._log_volume(points[rows], impacts)
-            likelihood[rows], holds[rows] = self._log_likelihood(impacts, len(rows))
+        prior[rows] += self._log_volume(points[rows], impacts)
+        likelihood, holds = np.zeros(len(points)), np.zeros(len(points), bool)
+        holds[rows] = True
+        for item in self.problem.observed:
+            density, is_within = observation(item, self.problem.misfit(impacts, item))
+            likelihood[rows] += density
+            holds[rows] &= is_within
+        likelihood = np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300)
         return State(points, prior, likelihood, holds)
 
+    @np.errstate(all="ignore")
     def _log_volume(self, points: Array, impacts: Impacts) -> Array:
         """Return the log of the prior's density of coordinates; -inf where physics forbids."""
-        problem = self.problem
-        allowed = np.ones(len(points), bool)
-        for _, margin in problem.margins(impacts):
-            allowed &= margin >= 0
+        is_allowed = np.ones(len(points), bool)
+        for _, margin in self.problem.margins(impacts):
+            is_allowed &= margin >= 0
         for name in ("UX", "UY", "VX", "VY"):
-            allowed &= np.abs(impacts[name]) <= WIDEST * problem.speed
-        volume = impacts.log_volume + problem.log_polar(self.names, points)
-        return np.where(allowed & np.isfinite(volume), volume, -np.inf)
-
-    def _log_likelihood(self, impacts: Impacts, count: int) -> tuple[Array, NDArray[np.bool_]]:
-        likelihood, holds = np.zeros(count), np.ones(count, bool)
-        for item in self.problem.observed:
-            part, within = observation(item, self.problem.misfit(impacts, item))
-            likelihood, holds = likelihood + part, holds & within
-        return np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300), holds
+            is_allowed &= np.abs(impacts[name]) <= WIDEST * self.problem.speed
+        volume = impacts.log_volume + self.problem.log_polar(self.names, points)
+        return np.where(is_allowed & np.isfinite(volume), volume, -np.inf)
 
 
+@np.errstate(all="ignore")
 def observation(item: Known, off: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return log densities of an observation, softened at limits, and whether it is within them."""
     amount = item.amount
@@ -186,8 +182,6 @@ def sample(
     problem: Problem,
     count: int = 20_000,
     seed: int = 0,
-    particles: int = PARTICLES,
-    progress: Callable[[float], object] | None = None,
 ) -> Sample | None:
     """Return draws, or None if no admissible impact is found within all limits.
 
@@ -199,58 +193,49 @@ def sample(
         Number of draws.
     seed : int, default 0
         Random seed.
-    particles : int
-        Number of particles.
-    progress : callable, optional
-        Called with the power reached, from 0 to 1.
     """
     rng = np.random.default_rng([seed, 1])
     target = Target(problem)
-    first = _first(target, particles, rng)
+    first = _first(target, rng)
     if first is None:
         return None
     state, log_weights = first
     family, power, scale = np.arange(len(state.points)), 0.0, 1.0
     while power < 1.0:
-        step = _next_power(log_weights, state.likelihood, power, particles)
-        rows = _resample(log_weights + (step - power) * state.likelihood, particles, rng)
+        step = _next_power(log_weights, state.likelihood, power)
+        rows = _resample(log_weights + (step - power) * state.likelihood, PARTICLES, rng)
         state, family, power = state.chosen(rows), family[rows], step
-        log_weights = np.zeros(particles)
-        state, scale = _move(
-            target, state, power, scale, STAGE_MOVES if power < 1.0 else LAST_MOVES, rng
-        )
-        if progress is not None:
-            progress(power)
+        log_weights = np.zeros(PARTICLES)
+        moves = STAGE_MOVES if power < 1.0 else LAST_MOVES
+        state, scale = _move(target, state, power, scale, moves, rng)
     if state.holds.sum() < MIN_FAMILIES:
         return None
-    kept = [state.points[state.holds]]
-    while sum(map(len, kept)) < count and len(kept) < MAX_ROUNDS:
+    points = [state.points[state.holds]]
+    while sum(map(len, points)) < count and len(points) < MAX_ROUNDS:
         state, scale = _move(target, state, power, scale, STAGE_MOVES, rng)
-        kept.append(state.points[state.holds])
-    drawn = np.concatenate(kept)[:count]
+        points.append(state.points[state.holds])
     sizes = np.bincount(family)
-    return Sample(problem, target.names, drawn, float(sizes.sum() ** 2 / (sizes**2).sum()))
+    families = float(sizes.sum() ** 2 / (sizes**2).sum())
+    return Sample(problem, target.names, np.concatenate(points)[:count], families)
 
 
-def _first(target: Target, particles: int, rng: np.random.Generator) -> tuple[State, Array] | None:
+def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | None:
     """Return particles of the prior that physics allows, and the log of their weights."""
-    parts, number = [], 0
-    for _ in range(MAX_ROUNDS):
-        points, weights = target.start(5 * particles, rng)
+    states: list[State] = []
+    log_weights: list[Array] = []
+    while sum(map(len, log_weights)) < 2 * PARTICLES and len(states) < MAX_ROUNDS:
+        points, weights = target.start(5 * PARTICLES, rng)
         state = target(points)
         rows = np.flatnonzero(np.isfinite(state.prior))
-        parts.append((state.chosen(rows), weights[rows]))
-        number += len(rows)
-        if number >= 2 * particles:
-            break
-    if number < MIN_FAMILIES:
+        states.append(state.chosen(rows))
+        log_weights.append(weights[rows])
+    if sum(map(len, log_weights)) < MIN_FAMILIES:
         return None
-    states, columns = zip(*parts, strict=True)
     state = State(*(np.concatenate(column) for column in zip(*states, strict=True)))
-    return state, np.concatenate(columns)
+    return state, np.concatenate(log_weights)
 
 
-def _next_power(log_weights: Array, likelihood: Array, power: float, particles: int) -> float:
+def _next_power(log_weights: Array, likelihood: Array, power: float) -> float:
     """Return the power at which half of the effective sample size is left (bisection)."""
 
     def effective(step: float) -> float:
@@ -258,7 +243,7 @@ def _next_power(log_weights: Array, likelihood: Array, power: float, particles: 
         weights = np.exp(logs - logs.max())
         return float(weights.sum() ** 2 / (weights**2).sum())
 
-    least = KEPT_PROPORTION * min(effective(power), 2 * particles)
+    least = KEPT_PROPORTION * min(effective(power), 2 * PARTICLES)
     if effective(1.0) >= least:
         return 1.0
     low, high = np.log(max(power, 1e-12) * (1 + 1e-9)), 0.0
@@ -285,26 +270,26 @@ def _move(
 ) -> tuple[State, float]:
     """Move particles until each was accepted ``distance`` times on average; return them and the
     adapted scale of moves."""
-    points, prior = state.points.copy(), state.prior.copy()
-    likelihood, holds = state.likelihood.copy(), state.holds.copy()
-    count, d = points.shape
-    moved = 0.0
+    count, d = state.points.shape
+    state = state.chosen(np.arange(count))  # a copy
+    points = state.points
+    total = 0.0
     for rounds in range(MAX_ROUNDS):
         first, second = rng.integers(0, count, (2, count))
         jump = JUMP / np.sqrt(2 * d) * scale * np.exp(rng.normal(0, 0.5, (count, 1)))
         jump[rng.random(count) < MODE_JUMPS] = 1.0
         proposal = points + jump * (points[first] - points[second])
         proposal += 1e-6 * (points[first] - points[rng.permutation(count)])
-        turned = (proposal[:, target.circular] + 180) % 360 - 180
-        proposal[:, target.circular] = turned
+        angles = proposal[:, target.circular]
+        proposal[:, target.circular] = (angles + 180) % 360 - 180
         new = target(proposal)
-        gain = new.prior - prior + power * (new.likelihood - likelihood)
-        accepted = np.log(rng.random(count)) < gain
-        for old, fresh in zip((points, prior, likelihood, holds), new, strict=True):
-            old[accepted] = fresh[accepted]
-        rate = float(accepted.mean())
+        gain = new.prior - state.prior + power * (new.likelihood - state.likelihood)
+        accept = np.log(rng.random(count)) < gain
+        for column, proposed in zip(state, new, strict=True):
+            column[accept] = proposed[accept]
+        rate = float(accept.mean())
         scale = float(np.clip(scale * np.exp(rate - ACCEPTANCE), 0.02, 2.0))
-        moved += rate
-        if moved >= distance and rounds >= 1:
+        total += rate
+        if total >= distance and rounds >= 1:
             break
-    return State(points, prior, likelihood, holds), scale
+    return state, scale

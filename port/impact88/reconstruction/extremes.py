@@ -23,6 +23,7 @@ CROSSOVER = 0.9
 SINGLE = 3  # every third generation changes one coordinate alone
 NEAR = 0.02  # standard deviation of such a change, over the width of the box
 MAX_CORNERS = 1 << 12
+INSIDE = 2000  # points inside of a box that a population starts from
 
 
 def extremes(
@@ -30,7 +31,6 @@ def extremes(
     seeds: Array,
     box: tuple[Array, Array],
     rng: np.random.Generator,
-    generations: int = GENERATIONS,
 ) -> tuple[Array, Array]:
     """Return the least and the greatest values of several outputs, and where they are.
 
@@ -45,8 +45,6 @@ def extremes(
         Lower and upper ends of each coordinate.
     rng : numpy.random.Generator
         Source of random numbers.
-    generations : int
-        Number of generations.
 
     Returns
     -------
@@ -57,52 +55,54 @@ def extremes(
     """
     low, high = box
     table = function(seeds)
-    signed = np.concatenate([-table, table], 1)  # one population for each output and sense
-    heights = np.nan_to_num(signed, nan=-np.inf).T
-    best = np.argsort(-heights, axis=1)[:, :POPULATION]
-    points, heights = seeds[best], np.take_along_axis(heights, best, 1)
+    senses = np.concatenate([-table, table], 1)  # one population for each output and sense
+    heights = np.nan_to_num(senses, nan=-np.inf).T
+    order = np.argsort(-heights, axis=1)[:, :POPULATION]
+    points, heights = seeds[order], np.take_along_axis(heights, order, 1)
     m, n, d = points.shape
-    own, rows = np.arange(m) % (m // 2), np.arange(m)[:, None]
-    sense = np.where(np.arange(m) < m // 2, -1.0, 1.0)[:, None]
-    for generation in range(1, generations + 1):
+    output, rows = np.arange(m)[:, None] % (m // 2), np.arange(m)[:, None]
+    sign = np.where(rows < m // 2, -1.0, 1.0)
+    for generation in range(1, GENERATIONS + 1):
         first, second = rng.integers(0, n, (2, m, n))
         factor = rng.uniform(*FACTOR, (m, n, 1))
         mutant = points + factor * (
             points[:, :1] - points + points[rows, first] - points[rows, second]
         )
         if generation % SINGLE == 0:
-            mutant = _one_changed(points.reshape(m * n, d), box, rng).reshape(m, n, d)
-        crossed = np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points)
-        trial = np.clip(crossed, low, high)
+            mutant = _one_coordinate_moved(points.reshape(m * n, d), box, rng).reshape(m, n, d)
+        trial = np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points)
+        trial = np.clip(trial, low, high)
         table = function(trial.reshape(m * n, d)).reshape(m, n, m // 2)
-        new = np.nan_to_num(sense * table[rows, np.arange(n), own[:, None]], nan=-np.inf)
-        better = new > heights
-        points[better], heights[better] = trial[better], new[better]
+        new = np.nan_to_num(sign * table[rows, np.arange(n), output], nan=-np.inf)
+        is_better = new > heights
+        points[is_better], heights[is_better] = trial[is_better], new[is_better]
         order = np.argsort(-heights, axis=1, kind="stable")
         points, heights = points[rows, order], np.take_along_axis(heights, order, 1)
-    values = (sense[:, 0] * heights[:, 0]).reshape(2, m // 2)
-    return values, points[:, 0].reshape(2, m // 2, d)
+    values = (sign * heights)[:, 0]
+    return values.reshape(2, m // 2), points[:, 0].reshape(2, m // 2, d)
 
 
-def _one_changed(points: Array, box: tuple[Array, Array], rng: np.random.Generator) -> Array:
+def _one_coordinate_moved(
+    points: Array, box: tuple[Array, Array], rng: np.random.Generator
+) -> Array:
     """Return points with one coordinate at an end of the box, or near its present value."""
     low, high = box
     n, d = points.shape
     rows, columns = np.arange(n), rng.integers(0, d, n)
-    near = points[rows, columns] + rng.normal(0, NEAR, n) * (high - low)[columns]
-    changed = points.copy()
-    changed[rows, columns] = np.choose(rng.integers(0, 3, n), [low[columns], high[columns], near])
-    return changed
+    nearby = points[rows, columns] + rng.normal(0, NEAR, n) * (high - low)[columns]
+    result = points.copy()
+    result[rows, columns] = np.choose(rng.integers(0, 3, n), [low[columns], high[columns], nearby])
+    return result
 
 
-def box_seeds(low: Array, high: Array, rng: np.random.Generator, count: int = 2000) -> Array:
+def box_seeds(low: Array, high: Array, rng: np.random.Generator) -> Array:
     """Return corners (all, or as many at random), points on faces and points inside of a box."""
     d = len(low)
     if 2**d <= MAX_CORNERS:
-        corners = np.array(list(product((0.0, 1.0), repeat=d))).reshape(-1, d)
+        corners = np.array(list(product((0.0, 1.0), repeat=d)))
     else:
         corners = rng.integers(0, 2, (MAX_CORNERS, d)).astype(float)
-    inside = rng.random((count, d))
-    faces = np.where(rng.random((count, d)) < 0.5, np.round(rng.random((count, d))), inside)
+    inside = rng.random((INSIDE, d))
+    faces = np.where(rng.random((INSIDE, d)) < 0.5, np.round(rng.random((INSIDE, d))), inside)
     unit = np.concatenate([corners, faces, inside])
     return np.where(unit < 1, low + unit * (high - low), high)

@@ -185,17 +185,17 @@ class Search:
 
     def slopes(self, point: Array) -> tuple[Array, Array]:
         """Return derivatives of both kinds of residuals at a point, by central differences."""
-        ahead, behind = (
-            self._beside(point[None], step * np.eye(len(point))) for step in (STEP, -STEP)
-        )
-        soft, hard = ((a[0] - b[0]) / (2 * STEP) for a, b in zip(ahead, behind, strict=True))
+        d = len(point)
+        steps = STEP * np.concatenate([np.eye(d), -np.eye(d)])
+        tables = self._beside(point[None], steps)
+        soft, hard = ((t[0, :, :d] - t[0, :, d:]) / (2 * STEP) for t in tables)
         return soft, hard
 
     def _beside(self, points: Array, steps: Array) -> list[Array]:
         """Return residuals of points moved by each step: point, residual, step."""
-        count, d = points.shape
-        tables = self.residuals((points[:, None] + steps).reshape(count * d, d))
-        return [table.reshape(count, d, table.shape[1]).swapaxes(1, 2) for table in tables]
+        count, number = len(points), len(steps)
+        tables = self.residuals(np.repeat(points, number, 0) + np.tile(steps, (count, 1)))
+        return [table.reshape(count, number, table.shape[1]).swapaxes(1, 2) for table in tables]
 
     def starts(self, count: int, rng: np.random.Generator) -> Array:
         """Return random points over the whole range of impacts."""

@@ -349,21 +349,21 @@ class Problem:
             for before, after in (("WA", "WAF"), ("WB", "WBF"))
         ]
         names = [*self.frames["A"], *self.frames["B"], *spins]
-        # over impulses, what is known is linear
-        laws = zip(COEFFICIENTS, IMPULSES, strict=True)
-        names += [n if n in self.known else other for n, other in laws if not self._has_no(n)]
+        for coefficient, impulse in zip(COEFFICIENTS, IMPULSES, strict=True):
+            if coefficient in self.known:
+                names.append(coefficient)
+            elif not (self.point and coefficient == "EM"):
+                names.append(impulse)  # over impulses, what is known is linear
+                self._note_range(coefficient, impulse)
         names += VEHICLES
         names += [n for n in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY") if n in self.known]
         for name in names:
-            amount = self.known.get(name)
-            if amount is not None and not amount.varies:
+            amount = self.known.get(name) or uniform(*self._widest(name))
+            if amount.varies:
+                self.coordinates.append(Known(name, amount, self.size(name)))
+            else:
                 self.fixed[name] = amount.value
-                continue
-            if amount is None:
-                self._assume(name)
-                amount = uniform(*self._widest(name))
-            self.coordinates.append(Known(name, amount, self.size(name)))
-        self.ranges = [n for n in RANGES if n not in self.fixed and not self._has_no(n)]
+        self.ranges = [n for n in RANGES if n not in self.fixed and not (self.point and n == "EM")]
         self._turns_with_course = [v for v in self.facing if not self.point]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
@@ -388,18 +388,14 @@ class Problem:
         amounts = [(name, self.known.get(name)) for name in coefficients]
         return not any(a and not a.varies and a.value == LOST[name] for name, a in amounts)
 
-    def _has_no(self, coefficient: str) -> bool:
-        return self.point and coefficient == "EM"
-
-    def _assume(self, name: str) -> None:
-        """Note the range of a coefficient whose impulse is the coordinate."""
-        coefficient = dict(zip(IMPULSES, COEFFICIENTS, strict=True)).get(name, "")
-        if coefficient in self.excluded or (coefficient == "MUP" and self.share):
+    def _note_range(self, coefficient: str, impulse: str) -> None:
+        """Note the range of a coefficient that is not given."""
+        if coefficient in self.excluded or impulse in self.known:
             return
-        if coefficient == "MUP":
-            self.assumed[coefficient] = "friction up to what ends the sliding, with an allowance"
-        elif coefficient:
+        if coefficient in RANGES:
             self.assumed[coefficient] = "{:g} to {:g}".format(*RANGES[coefficient])
+        elif not self.share:
+            self.assumed[coefficient] = "friction up to what ends the sliding, with an allowance"
 
     # -- impacts
 
