@@ -131,8 +131,6 @@ class Reconstruction:
         Number of impacts that agree with what is known.
     draws : mapping of str to ndarray
         Random draws by result; empty if there are none.
-    deviations : mapping of str to float
-        Standard deviations to first order.
     bounds : mapping of str to (float, float)
         Least and greatest values found within all limits.
     evidence : Evidence
@@ -175,7 +173,6 @@ class Reconstruction:
     tests: Mapping[str, Test] = field(default_factory=dict)
     solutions: int = 1
     draws: Mapping[str, Array] = field(default_factory=dict)
-    deviations: Mapping[str, float] = field(default_factory=dict)
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     evidence: Evidence = Evidence(0.0, 0, 1.0)
     laws: tuple[MissedLaw, ...] = ()
@@ -406,7 +403,7 @@ def _best_within_limits(
 
 
 def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruction:
-    """Return an impact with everything that is determined, and first-order deviations."""
+    """Return an impact with everything that is determined, and first-order intervals."""
     problem = fit.problem
     names = [name for name in result_names(problem) if _exists(fit, name)]
     open_names = [name for name in names if fit.is_open(name)]
@@ -419,16 +416,14 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         for name, times in (("FA", 1.0), ("FM2", 2.0), ("FM3", 3.0)):  # chapter, Section III
             values[name] = times * values["P"] / contact_time
             slopes[name] = times * slopes["P"] / contact_time
-    deviations = {name: float(np.sqrt(np.square(s).sum())) for name, s in slopes.items()}
     intervals: dict[str, tuple[float, float]] = {}
     drivers: dict[str, dict[str, float]] = {}
     if verdict not in ADVERSE:  # the numbers of an adverse one settle nothing
         reach = NormalDist().inv_cdf(INTERVAL[1])
-        intervals = {
-            name: (values[name] - reach * sd, values[name] + reach * sd)
-            for name, sd in deviations.items()
-            if sd > TIE * abs(values[name])
-        }
+        for name, slope in slopes.items():
+            sd = float(np.sqrt(np.square(slope).sum()))
+            if sd > TIE * abs(values[name]):
+                intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
     vehicles = {name: fit.value(name) for name in VEHICLES}
     backwards = [
@@ -442,7 +437,6 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         assumed=problem.assumed | _motion_ranges(problem, open_names),
         verdict=verdict,
         tests=_tests(fit),
-        deviations=deviations,
         evidence=_evidence(fit),
         broken=_conditions(fit, verdict),
         drivers=drivers,
@@ -600,7 +594,7 @@ def _with_sample(result: Reconstruction, draws: Sample | None, seed: int) -> Rec
         )
         return replace(result, remarks=(*result.remarks, remark))
     columns, intervals = {}, dict(result.intervals)
-    for name in result_names(draws.problem):
+    for name in result_names(draws.target.problem):
         if name not in result.values and name not in result.undetermined:
             continue
         column = unwrapped(name, draws[name], result.values.get(name))

@@ -31,9 +31,9 @@ def log_density(amount: Amount, values: Array) -> Array:
         return -0.5 * np.square(off / amount.sd)
     if amount.kind != "triangular":
         return np.zeros(np.shape(values))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        side = np.where(off > 0, amount.high - amount.value, amount.value - amount.low)
-        return np.log(np.clip(1.0 - np.abs(off) / np.where(off == 0, 1.0, side), 0.0, 1.0))
+    side = np.where(off > 0, amount.high - amount.value, amount.value - amount.low)
+    with np.errstate(divide="ignore"):
+        return np.log(np.clip(1.0 - np.abs(off) / np.maximum(side, 1e-300), 0.0, 1.0))
 
 
 def draw(amount: Amount, count: int, rng: np.random.Generator) -> Array:
@@ -76,17 +76,16 @@ def correlated(
     UserError
         For an unknown name, and correlations that contradict one another.
     """
-    index = {name: k for k, name in enumerate(amounts)}
-    matrix = np.eye(len(amounts))
+    names = list(amounts)
+    matrix = np.eye(len(names))
     for (first, second), value in correlations.items():
-        if first not in index or second not in index or first == second:
+        if first == second or not {first, second} <= {*names} or not -1.0 <= value <= 1.0:
             raise UserError(
-                f"correlation of {first} and {second}: expected two of the values known within "
-                f"limits, {' '.join(index)}"
+                f"correlation of {first} and {second} is {value}; expected two of the values known "
+                f"within limits ({' '.join(names)}) and a number from -1 to 1"
             )
-        if not -1.0 <= value <= 1.0:
-            raise UserError(f"correlation of {first} and {second} is {value}; expected -1 to 1")
-        matrix[index[first], index[second]] = matrix[index[second], index[first]] = value
+        row, column = names.index(first), names.index(second)
+        matrix[row, column] = matrix[column, row] = value
     sizes, vectors = np.linalg.eigh(matrix)
     if sizes.min(initial=0.0) < -1e-9:
         raise UserError("these correlations contradict one another")

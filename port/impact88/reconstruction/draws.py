@@ -51,19 +51,18 @@ class State(NamedTuple):
 
 @dataclass
 class Sample:
-    """Draws: ``points`` (rows) over ``names``.
+    """Draws: ``points`` (rows) over the coordinates of ``target``.
 
     ``families``: number of independent particles that the draws descend from."""
 
-    problem: Problem
-    names: list[str]
+    target: Target
     points: Array
     families: float
 
     @cached_property
     def impacts(self) -> Impacts:
         """The impacts."""
-        return self.problem.impacts(self.names, self.points)
+        return self.target.impacts(self.points)
 
     def __getitem__(self, name: str) -> Array:
         """Return the values of a quantity."""
@@ -71,7 +70,7 @@ class Sample:
 
     def bounds(self, names: Sequence[str], seed: int = 0) -> dict[str, tuple[float, float]]:
         """Return the least and the greatest values found within all limits."""
-        target, rng = Target(self.problem), np.random.default_rng([seed, 2])
+        target, rng = self.target, np.random.default_rng([seed, 2])
         low, high = np.array([item.amount.limits() for item in target.items]).T
         width = 2.0 * np.ptp(self.points, axis=0)
         low = np.where(np.isfinite(low), low, self.points.min(0) - width)
@@ -79,7 +78,7 @@ class Sample:
 
         def table(points: Array) -> Array:
             state = target(points)
-            impacts = self.problem.impacts(self.names, points)
+            impacts = target.impacts(points)
             is_within = np.isfinite(state.prior) & state.holds
             return np.stack([np.where(is_within, impacts[name], np.nan) for name in names], 1)
 
@@ -100,6 +99,10 @@ class Target:
             ],
             bool,
         )
+
+    def impacts(self, points: Array) -> Impacts:
+        """Return the impacts at points."""
+        return self.problem.impacts(self.names, points)
 
     def start(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return points, and the log of their weights under the prior: coefficients that are not
@@ -140,7 +143,7 @@ class Target:
         """Return points with the log densities of the prior and of the observations."""
         prior = self.log_prior(points)
         rows = np.flatnonzero(np.isfinite(prior))
-        impacts = self.problem.impacts(self.names, points[rows])
+        impacts = self.impacts(points[rows])
         prior[rows] += self._log_volume(points[rows], impacts)
         likelihood, holds = np.zeros(len(points)), np.zeros(len(points), bool)
         holds[rows] = True
@@ -216,7 +219,7 @@ def sample(
         points.append(state.points[state.holds])
     sizes = np.bincount(family)
     families = float(sizes.sum() ** 2 / (sizes**2).sum())
-    return Sample(problem, target.names, np.concatenate(points)[:count], families)
+    return Sample(target, np.concatenate(points)[:count], families)
 
 
 def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | None:

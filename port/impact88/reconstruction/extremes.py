@@ -53,15 +53,16 @@ def extremes(
     points : ndarray
         Shape (2, outputs, coordinates): where they are attained.
     """
-    low, high = box
-    table = function(seeds)
-    senses = np.concatenate([-table, table], 1)  # one population for each output and sense
-    heights = np.nan_to_num(senses, nan=-np.inf).T
-    order = np.argsort(-heights, axis=1)[:, :POPULATION]
-    points, heights = seeds[order], np.take_along_axis(heights, order, 1)
+
+    def heights_of(points: Array) -> Array:
+        table = function(points)
+        return np.asarray(np.nan_to_num(np.concatenate([-table, table], 1), nan=-np.inf))
+
+    table = heights_of(seeds).T  # one population for each output and sense
+    order = np.argsort(-table, axis=1)[:, :POPULATION]
+    points, heights = seeds[order], np.take_along_axis(table, order, 1)
     m, n, d = points.shape
-    output, rows = np.arange(m)[:, None] % (m // 2), np.arange(m)[:, None]
-    sign = np.where(rows < m // 2, -1.0, 1.0)
+    rows, columns = np.arange(m)[:, None], np.arange(n)
     for generation in range(1, GENERATIONS + 1):
         first, second = rng.integers(0, n, (2, m, n))
         factor = rng.uniform(*FACTOR, (m, n, 1))
@@ -71,15 +72,14 @@ def extremes(
         if generation % SINGLE == 0:
             mutant = _one_coordinate_moved(points.reshape(m * n, d), box, rng).reshape(m, n, d)
         trial = np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points)
-        trial = np.clip(trial, low, high)
-        table = function(trial.reshape(m * n, d)).reshape(m, n, m // 2)
-        new = np.nan_to_num(sign * table[rows, np.arange(n), output], nan=-np.inf)
+        trial = np.clip(trial, *box)
+        new = heights_of(trial.reshape(m * n, d)).reshape(m, n, m)[rows, columns, rows]
         is_better = new > heights
         points[is_better], heights[is_better] = trial[is_better], new[is_better]
         order = np.argsort(-heights, axis=1, kind="stable")
         points, heights = points[rows, order], np.take_along_axis(heights, order, 1)
-    values = (sign * heights)[:, 0]
-    return values.reshape(2, m // 2), points[:, 0].reshape(2, m // 2, d)
+    values = heights[:, 0].reshape(2, m // 2)
+    return np.stack([-values[0], values[1]]), points[:, 0].reshape(2, m // 2, d)
 
 
 def _one_coordinate_moved(

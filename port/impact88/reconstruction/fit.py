@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,15 +31,6 @@ TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: t
 CANDIDATE_TOL = 1e-4  # misfit at which iterations end near an impact
 STEP = 1e-7  # of difference quotients; smaller slopes and excesses are rounding
 RESULT_STEP = 1e-6  # of those of results, in typical sizes; a smaller slope is rounding
-
-
-class Minimum(NamedTuple):
-    """A minimum: the ``point`` over scaled coordinates, the sum of ``squares`` of what has
-    tolerances, and the largest ``misfit`` of exact values."""
-
-    point: Array
-    squares: float
-    misfit: float
 
 
 @dataclass
@@ -250,7 +240,7 @@ class Search:
         soft, hard = self.residuals(points)
         return np.concatenate([soft, hard / tolerance], 1)
 
-    def polish(self, start: Array) -> Minimum:
+    def polish(self, start: Array) -> Array:
         """Return the minimum nearby at which exact values hold (Gauss-Newton in their null
         space)."""
         point = start
@@ -265,16 +255,14 @@ class Search:
             point = point + step * min(1.0, 1.0 / max(size, 1e-300))
             if size < 1e-12:
                 break
-        ends = np.stack([start, point])
-        soft, hard = self.residuals(ends)
-        misfits = np.abs(hard).max(1, initial=0.0)
+        _, hard = self.residuals(np.stack([start, point]))
+        before, after = np.abs(hard).max(1, initial=0.0)
         # a step that crosses a limit again does not count
-        k = int(misfits[1] <= misfits[0] or misfits[1] < EXACT_TOL)
-        return Minimum(ends[k], float((soft[k] ** 2).sum()), float(misfits[k]))
+        return point if after <= before or after < EXACT_TOL else start
 
-    def describe(self, minimum: Minimum) -> Fit:
+    def describe(self, point: Array) -> Fit:
         """Return a minimum with what it leaves open and what it depends on."""
-        point = minimum.point
+        soft, hard = self.residuals(point[None])
         by_soft, by_limits = self.slopes(point)
         basis = null_space(by_limits[: len(self.hard)])
         u, s, vt = np.linalg.svd(by_soft @ basis)
@@ -292,8 +280,8 @@ class Search:
             names=self.names,
             sizes=self.sizes,
             point=point * self.sizes,
-            squares=minimum.squares,
-            misfit=minimum.misfit,
+            squares=float((soft[0] ** 2).sum()),
+            misfit=float(np.abs(hard).max(initial=0.0)),
             measured=self.measured,
             open_directions=open_directions * self.sizes[:, None],
             sensitivity=sensitivity * self.sizes[:, None],

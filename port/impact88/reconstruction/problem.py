@@ -103,13 +103,13 @@ class Problem:
         if self.point:
             self._complete_points(known)
         _check_coefficients(known)
-        self.sign = self._set_friction(known, sign)
-        self.given = {name for name in COEFFICIENTS if name in known}
+        self._set_friction(known, sign)
         self._set_scales()
+        self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
+        self._turns_with_course = [v for v in self.facing if not self.point]
         self.frames: dict[str, tuple[str, str]] = {}
         for vehicle in "AB":
             self.frames[vehicle] = self._frame(vehicle)
-        self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
         self.coordinates: list[Known] = []
         self.fixed: dict[str, float] = {}
         names = self._choose_coordinates()
@@ -177,9 +177,8 @@ class Problem:
             raise UserError(f"{', '.join(turning)} cannot be used: {missing(absent)}")
         if arms := [name for name in absent if name in ARMS]:
             self.point = self.without_arms = True
-            reason = ", ".join(arms)
-            for name in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS", "PM", "KI", "KF", "EL"):
-                self.excluded[name] = reason
+            names = ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS", "PM", "KI", "KF", "EL")
+            self.excluded |= dict.fromkeys(names, ", ".join(arms))
         elif "GA" in absent:
             raise UserError(missing(["GA"]))
         for name in ("TA", "TB"):
@@ -242,20 +241,16 @@ class Problem:
         for name in names:
             self.excluded.setdefault(name, "GA")
 
-    def _set_friction(self, known: dict[str, Amount], sign: int) -> int:
-        """Replace MU by the signed MUP, unless it is a share of the critical friction; return the
-        sign."""
+    def _set_friction(self, known: dict[str, Amount], sign: int) -> None:
+        """Replace MU by the signed MUP, unless it is a share of the critical friction."""
         if "MU" in known and "MUP" in known:
             raise UserError("MU and MUP are both given; expected one of them")
         self.share = "MU" in known and known["MU"].share
-        if "MU" not in known or self.share:
-            return 0
-        friction = known.pop("MU")
-        if friction.value == PIVOT and not friction.varies:
-            known["MUP"] = friction
-            return 0
-        known["MUP"] = replace(friction, text="").mapped(Fraction(-1 if sign < 0 else 1))
-        return sign
+        self.sign = 0
+        if "MU" in known and not self.share:
+            size = replace(known.pop("MU"), text="")
+            known["MUP"] = size.mapped(Fraction(-1)) if sign < 0 else size
+            self.sign = sign
 
     def softened(self, tolerance: float) -> Problem:
         """Return the problem with one tolerance, in typical sizes, for all exact motions.
@@ -324,21 +319,20 @@ class Problem:
         """Return the coordinates of a vehicle's velocity that use most of what is known."""
         x, y, speed, course = VECTORS[vehicle]
         x_after, y_after = f"V{vehicle}X", f"V{vehicle}Y"
-
-        def score(names: tuple[str, str]) -> int:
-            amounts = [self.known[name] for name in names if name in self.known]
-            return sum(2 + (not amount.varies) for amount in amounts)
-
-        mixed = (
-            x_after if x not in self.known and x_after in self.known else x,
-            y_after if y not in self.known and y_after in self.known else y,
-        )
-        after = (f"S{vehicle}F", f"H{vehicle}F")
-        frames = [mixed, (speed, course), after]
-        is_after = vehicle == "B" and any(name in FINAL for name in self.frames["A"])
-        if is_after and not self._leaves("E", "MUP"):
-            frames = [(x, y), (speed, course)]
-        return max(frames, key=score)
+        scores = {name: 2 + (not amount.varies) for name, amount in self.known.items()}
+        before = [(x, y), (speed, course)]
+        after = [
+            (
+                x_after if x not in self.known and x_after in self.known else x,
+                y_after if y not in self.known and y_after in self.known else y,
+            ),
+            (speed, course),
+            (f"S{vehicle}F", f"H{vehicle}F"),
+        ]
+        is_late = vehicle == "B" and any(name in FINAL for name in self.frames["A"])
+        is_early = vehicle in self._turns_with_course or (is_late and not self._leaves("E", "MUP"))
+        frames = before if is_early else after
+        return max(frames, key=lambda names: sum(scores.get(name, 0) for name in names))
 
     def _choose_coordinates(self) -> set[str]:
         """Set `coordinates` and `fixed`, and return the names that are used."""
@@ -364,12 +358,8 @@ class Problem:
             else:
                 self.fixed[name] = amount.value
         self.ranges = [n for n in RANGES if n not in self.fixed and not (self.point and n == "EM")]
-        self._turns_with_course = [v for v in self.facing if not self.point]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
-        early = {v: ((x, y), (speed, course)) for v, (x, y, speed, course) in VECTORS.items()}
-        if any(self.frames[v] not in early[v] for v in self._turns_with_course):
-            raise UserError('TA or TB = "course" needs the course before the impact (HA, HB)')
         return set(names)
 
     def _widest(self, name: str) -> tuple[float, float]:
@@ -407,8 +397,8 @@ class Problem:
             self._make_cartesian(values)
             impacts = Impacts(placed({"M": 4.0 if self.point else 6.0, **values}))
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
-                rest = impacts["S" + vehicle] < TOUCH * self.speed
-                course = np.where(rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
+                is_at_rest = impacts["S" + vehicle] < TOUCH * self.speed
+                course = np.where(is_at_rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
                 impacts.values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
             impacts.compute(self.needed)
             if self.share:
@@ -457,7 +447,7 @@ class Problem:
         side = np.where(inside["approach"][0] < 0, -1.0, 1.0) if self.point else 1.0
         rows += [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
         rows += [(name, row) for name in self.ranges for row in inside[name]]
-        if "MUP" not in self.given and friction:
+        if "MUP" not in self.known and friction:
             rows += [("friction", side * row) for row in inside["friction"]]
         if self.sign:
             rows.append(("sign of MU", -self.sign * impacts["gt"] / self.speed))
@@ -497,12 +487,14 @@ def _check_coefficients(known: Mapping[str, Amount]) -> None:
     for name, (low, high) in RANGES.items():
         amount = known.get(name, Amount.exactly(low))
         if (amount.high < low or amount.low > high) and amount.value != NO_MOMENT:
-            no_moment = f", or {NO_MOMENT:g} for no moment" if name == "EM" else ""
-            raise UserError(f"{name} is {amount.value:g}; expected {low:g} to {high:g}{no_moment}")
+            raise UserError(
+                f"{name} is {amount.value:g}; expected E from 0 to 1 and EM from -1 to 0, or 1 for "
+                "no moment"
+            )
 
 
-def _is_zero(amount: Amount | None) -> bool:
-    return amount is not None and not amount.varies and amount.value == 0
+def _is_zero(amount: Amount) -> bool:
+    return not amount.varies and amount.value == 0
 
 
 def unwrapped(name: str, column: Array, middle: float | None) -> Array:

@@ -39,10 +39,10 @@ VERDICTS = {
 }
 
 
-def number(name: str, value: float, view: View = PLAIN, digits: int = 4) -> str:
+def number(name: str, value: float, view: View = PLAIN) -> str:
     """Return a number with its unit, as shown."""
     shown = view.shown(name, value)
-    text = f"{0.0 if abs(shown) < 1e-12 else shown:.{digits}g}"
+    text = f"{0.0 if abs(shown) < 1e-12 else shown:.4g}"
     if "e+" in text and abs(shown) < 1e9:
         text = f"{float(text):,.0f}"
     return f"{text} {view.unit(name)}".rstrip()
