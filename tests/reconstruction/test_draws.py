@@ -8,7 +8,7 @@ from impact88.cases.amounts import Amount, read
 from impact88.mechanics.solve import evaluate, solve
 from impact88.names import VELOCITIES
 from impact88.reconstruction.answer import reconstruct
-from impact88.reconstruction.densities import correlated, from_normal, log_density
+from impact88.reconstruction.densities import draw_correlated, from_normal, log_density
 from impact88.reconstruction.draws import Target, sample
 from impact88.reconstruction.problem import Problem
 
@@ -161,6 +161,6 @@ def test_densities(amount):
 
 def test_correlated_values():
     amounts = {"MA": Amount(2.0, 1.0, 3.0, "uniform"), "IA": Amount(2.0, 1.0, 3.0, "uniform")}
-    drawn = correlated(amounts, 50_000, np.random.default_rng(0), {("MA", "IA"): 0.8})
+    drawn = draw_correlated(amounts, 50_000, np.random.default_rng(0), {("MA", "IA"): 0.8})
     expected = 6 / np.pi * np.arcsin(0.4)  # rank correlation of a Gaussian copula
     assert np.corrcoef(drawn.T)[0, 1] == pytest.approx(expected, abs=0.01)

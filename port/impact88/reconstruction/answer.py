@@ -24,7 +24,7 @@ from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
-from .problem import ANGLES, RANGES, WIDEST, Problem, signs_of_friction, unwrapped
+from .problem import ANGLES, RANGES, WIDEST, Problem, signs_of_friction, unwrap_angles
 
 CONTRADICTION = 1e-3  # probability of a misfit below which values contradict one another
 LIKELY = 9.0  # sum of squares above the least, up to which an impact is shown
@@ -287,7 +287,7 @@ def reconstruct(
             results[0] = replace(results[0], tests=tests, evidence=evidence)
         else:  # they agree with each other, but not with physics
             results[0] = replace(results[0], broken=choice.best.violations())
-    if samples and results[0].verdict in ("agrees", "at a limit"):
+    if samples and not results[0].is_adverse:
         fits = [fit for fit, _ in choice.fits]
         results = _with_draws(results, fits, samples, seed)
     return results
@@ -363,7 +363,7 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
 
 def driving_backwards(fit: Fit) -> list[str]:
     """Return the speeds that are negative along a known course."""
-    speeds = dict(zip(fit.names, fit.point, strict=True))
+    speeds = dict(zip(fit.search.names, fit.point, strict=True))
     return [name for name in SPEEDS if speeds.get(name, 0.0) < -1e-6 * fit.problem.speed]
 
 
@@ -388,7 +388,7 @@ def _best_within_limits(
     """Return the admissible impact with the least sum of squares, None if there is none."""
     admissible: list[Fit] = []
     for problem in problems:
-        search = Search(problem.softened(SOFTENED) if softens else problem, limited=True)
+        search = Search(problem.soften(SOFTENED) if softens else problem, limited=True)
         starts = [
             np.array([fit.value(name) for name in search.names])
             for fit in fits
@@ -451,10 +451,11 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
 
 def _motion_ranges(problem: Problem, open_names: Sequence[str]) -> dict[str, str]:
     """Return the ranges of the motions that are left open."""
+    names = {*open_names} & {*BEFORE, *SPEEDS} - problem.known.keys()
     return {
         item.name: f"up to {WIDEST:g} times the largest motion given"
         for item in problem.coordinates
-        if item.name not in problem.known and {item.name} & {*open_names} & {*BEFORE, *SPEEDS}
+        if item.name in names
     }
 
 
@@ -470,9 +471,8 @@ def result_names(problem: Problem) -> list[str]:
 
 def _exists(fit: Fit, name: str) -> bool:
     """Return False for quotients of 0 and for the course of a vehicle at rest."""
-    if not math.isfinite(fit.value(name)):
-        return False
-    return name not in COURSES or fit.value(COURSES[name]) >= TIE * fit.problem.speed
+    is_at_rest = name in COURSES and fit.value(COURSES[name]) < TIE * fit.problem.speed
+    return math.isfinite(fit.value(name)) and not is_at_rest
 
 
 def _without_noise(name: str, value: float, size: float) -> float:
@@ -501,7 +501,7 @@ def _evidence(fit: Fit) -> Evidence:
 def _tests(fit: Fit) -> dict[str, Test]:
     """Return the measured values beside the others, the one most at odds first."""
     tests = {}
-    for item, leverage in zip(fit.measured, fit.leverage.tolist(), strict=True):
+    for item, leverage in zip(fit.search.measured, fit.leverage.tolist(), strict=True):
         measurement, sd = item.amount.value, item.sd
         misfit = float(np.ravel(fit.problem.misfit(fit.impacts, item))[0])
         visible = 1.0 - leverage  # part of an error that the adjustment shows
@@ -529,7 +529,7 @@ def _at_odds(tests: Mapping[str, Test]) -> tuple[str, ...]:
 def _drivers(fit: Fit, slope: Array) -> dict[str, float]:
     """Return the measured values' shares of the variance of a result, largest first."""
     squares = np.square(slope)
-    shares = zip((item.name for item in fit.measured), squares / squares.sum(), strict=True)
+    shares = zip((item.name for item in fit.search.measured), squares / squares.sum(), strict=True)
     large = {name: float(share) for name, share in shares if share >= CHECKED}
     return dict(sorted(large.items(), key=lambda pair: -pair[1]))
 
@@ -550,19 +550,13 @@ def _advice(fit: Fit, open_names: Sequence[str]) -> tuple[str, ...]:
     the open directions, of those named before."""
     names: list[str] = []
     rows: list[Array] = []
-    slopes = {name: fit.open_slopes(name) for name in open_names}
-    number = _rank_of_rows([*slopes.values()])
     for name in ADVICE:
-        if name in fit.problem.known or name not in slopes or len(rows) == number:
-            continue
-        if _rank_of_rows([*rows, slopes[name]]) > len(rows):
-            rows.append(slopes[name])
-            names.append(name)
+        if name in open_names and name not in fit.problem.known:
+            table = np.stack([*rows, fit.open_slopes(name)])
+            if np.linalg.matrix_rank(table, RESULT_STEP) > len(rows):
+                rows.append(table[-1])
+                names.append(name)
     return tuple(names)
-
-
-def _rank_of_rows(rows: Sequence[Array]) -> int:
-    return int(np.linalg.matrix_rank(np.stack(rows), RESULT_STEP)) if rows else 0
 
 
 # -- draws
@@ -597,7 +591,7 @@ def _with_sample(result: Reconstruction, draws: Sample | None, seed: int) -> Rec
     for name in result_names(draws.target.problem):
         if name not in result.values and name not in result.undetermined:
             continue
-        column = unwrapped(name, draws[name], result.values.get(name))
+        column = unwrap_angles(name, draws[name], result.values.get(name))
         if np.isfinite(column).all():
             columns[name] = column
             if name in result.undetermined or name in intervals:
@@ -619,9 +613,8 @@ def _with_ends(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict
     words = dict(assumed)
     for name in {*RANGES} & {*assumed} & {*columns}:
         low, high = RANGES[name]
-        first, last = np.quantile(columns[name], INTERVAL).tolist()
-        margin = NARROWED * (high - low)
-        ends = [f"{low:g}"] * (first - low < margin) + [f"{high:g}"] * (high - last < margin)
+        pairs = zip((low, high), np.quantile(columns[name], INTERVAL).tolist(), strict=True)
+        ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED * (high - low)]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"
     return words

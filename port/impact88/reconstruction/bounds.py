@@ -20,11 +20,11 @@ from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
 from ..status import Status
-from .densities import correlated
+from .densities import draw_correlated
 from .extremes import box_seeds, extremes
 from .impacts import COURSES, FORCES, SPEEDS, Array
 from .known import as_amounts
-from .problem import OWN_AXES, placed, unwrapped
+from .problem import OWN_AXES, unwrap_angles, with_arms
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
@@ -80,8 +80,6 @@ class Bounds:
         Bounds by result.
     warnings : mapping of str to float
         Name of a STATUS bit -> fraction of the draws that have it.
-    samples : int
-        Number of draws.
     draws : mapping of str to ndarray
         The draws by result.
 
@@ -95,7 +93,6 @@ class Bounds:
     inputs: Mapping[str, Amount]
     outputs: Mapping[str, Bound]
     warnings: Mapping[str, float]
-    samples: int
     draws: Mapping[str, Array] = field(default_factory=dict, repr=False)
 
 
@@ -121,11 +118,11 @@ class _Box:
         self, points: Array, wanted: Sequence[str]
     ) -> tuple[dict[str, Array], dict[str, tuple[str, ...]]]:
         """Return results of inputs (rows), and the inputs that other results lack."""
-        columns = placed({**self.exact, **dict(zip(self.varied, points.T, strict=True))})
+        columns = with_arms({**self.exact, **dict(zip(self.varied, points.T, strict=True))})
         if self.share:
-            values, _ = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
-            if "MUC" not in values:
-                raise UserError("MU is a share of MUC, which needs a complete scene")
+            values, lacking = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
+            if lacking:
+                return {}, lacking
             turn = np.where(values["gt"] > 0, -1.0, 1.0)  # line 400 turns it again
             columns["MU"] = turn * columns["MU"] * values["MUC"]
         values, lacking = evaluate(columns, wanted)
@@ -192,13 +189,13 @@ def bounds(
 
     def table(points: Array) -> Array:
         results, _ = box.results(points, names)
-        columns = [unwrapped(name, results[name], float(middle[name][0])) for name in names]
+        columns = [unwrap_angles(name, results[name], float(middle[name][0])) for name in names]
         return np.where(np.isfinite(columns), columns, np.nan).T
 
     rng = np.random.default_rng([seed, 0])
     seeds = np.concatenate([box.nominal, box_seeds(box.low, box.high, rng)])
     ends, points = extremes(table, seeds, (box.low, box.high), rng)
-    inputs_drawn = correlated(
+    inputs_drawn = draw_correlated(
         box.varied, samples, np.random.default_rng([seed, 1]), correlations or {}
     )
     draws = table(inputs_drawn)
@@ -220,7 +217,7 @@ def bounds(
             drivers=drivers[k],
         )
     columns = dict(zip(names, draws.T, strict=True))
-    return Bounds(box.varied, results, _warnings(box, inputs_drawn), samples, columns)
+    return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns)
 
 
 def _drivers(

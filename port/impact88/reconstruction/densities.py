@@ -63,7 +63,7 @@ def _quantile_table(amount: Amount) -> tuple[Array, Array]:
     return variates, np.interp(shares, [0.0, *(sums / sums[-1])], values)
 
 
-def correlated(
+def draw_correlated(
     amounts: Mapping[str, Amount],
     count: int,
     rng: np.random.Generator,

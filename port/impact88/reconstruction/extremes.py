@@ -14,8 +14,6 @@ import numpy as np
 
 from .impacts import Array
 
-Function = Callable[[Array], Array]
-
 POPULATION = 48
 GENERATIONS = 120
 FACTOR = (0.3, 0.9)  # of a difference, from and to (Storn and Price 1997)
@@ -27,7 +25,7 @@ INSIDE = 2000  # points inside of a box that a population starts from
 
 
 def extremes(
-    function: Function,
+    function: Callable[[Array], Array],
     seeds: Array,
     box: tuple[Array, Array],
     rng: np.random.Generator,

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from .densities import draw
 from .impacts import AFTER, BEFORE, COURSES, Array, Impacts
-from .problem import ANGLES, Known, Problem
+from .problem import ANGLES, Problem
 
 BATCH = 120  # starts at a time
 MAX_STARTS = 480
@@ -39,16 +39,12 @@ class Fit:
 
     Parameters
     ----------
-    problem : Problem
-        The problem.
-    names : list of str
-        Its coordinates.
-    sizes, point : ndarray
-        Their typical sizes and their values.
+    search : Search
+        The problem with its coordinates and measured values.
+    point : ndarray
+        Values of the coordinates.
     squares, misfit : float
         Sum of squares of what has tolerances, and the largest misfit of exact values.
-    measured : list of Known
-        Values known with a tolerance.
     open_directions : ndarray
         Changes (columns) of the coordinates that no known value resists.
     sensitivity : ndarray
@@ -61,13 +57,10 @@ class Fit:
         All velocities, and which of them known values determine.
     """
 
-    problem: Problem
-    names: list[str]
-    sizes: Array
+    search: Search
     point: Array
     squares: float
     misfit: float
-    measured: list[Known]
     open_directions: Array
     sensitivity: Array
     rank: int
@@ -76,9 +69,14 @@ class Fit:
     settled: NDArray[np.bool_]
 
     @property
+    def problem(self) -> Problem:
+        """The problem."""
+        return self.search.problem
+
+    @property
     def redundancy(self) -> int:
         """Number of measured values more than needed."""
-        return len(self.measured) - self.rank
+        return len(self.search.measured) - self.rank
 
     @property
     def probability(self) -> float:
@@ -88,17 +86,17 @@ class Fit:
     @cached_property
     def impacts(self) -> Impacts:
         """The impact."""
-        return self.problem.impacts(self.names, self.point[None])
+        return self.problem.impacts(self.search.names, self.point[None])
 
     @cached_property
     def _nearby(self) -> tuple[Array, Impacts]:
         """Lengths of open directions and sensitivities in typical sizes, and the impacts a small
         step ahead along each, then a step back."""
         shifts = np.concatenate([self.open_directions.T, self.sensitivity.T])
-        lengths = np.abs(shifts / self.sizes).max(1, initial=1e-300)
+        lengths = np.abs(shifts / self.search.sizes).max(1, initial=1e-300)
         steps = RESULT_STEP * shifts / lengths[:, None]
         points = self.point + np.concatenate([steps, -steps])
-        return lengths, self.problem.impacts(self.names, points)
+        return lengths, self.problem.impacts(self.search.names, points)
 
     def value(self, name: str) -> float:
         """Return a result of the impact."""
@@ -177,11 +175,11 @@ class Search:
         """Return derivatives of both kinds of residuals at a point, by central differences."""
         d = len(point)
         steps = STEP * np.concatenate([np.eye(d), -np.eye(d)])
-        tables = self._beside(point[None], steps)
+        tables = self._residuals_beside(point[None], steps)
         soft, hard = ((t[0, :, :d] - t[0, :, d:]) / (2 * STEP) for t in tables)
         return soft, hard
 
-    def _beside(self, points: Array, steps: Array) -> list[Array]:
+    def _residuals_beside(self, points: Array, steps: Array) -> list[Array]:
         """Return residuals of points moved by each step: point, residual, step."""
         count, number = len(points), len(steps)
         tables = self.residuals(np.repeat(points, number, 0) + np.tile(steps, (count, 1)))
@@ -224,7 +222,7 @@ class Search:
     ) -> Array:
         """Return a Levenberg-Marquardt step of each point, at most 2 typical sizes long."""
         d = points.shape[1]
-        soft, hard = self._beside(points, STEP * np.eye(d))
+        soft, hard = self._residuals_beside(points, STEP * np.eye(d))
         slope = np.concatenate([soft, hard / tolerance], 1) - residual[:, :, None]
         slope /= STEP
         square = np.einsum("nij,nik->njk", slope, slope)
@@ -276,13 +274,10 @@ class Search:
         velocities = self.invariants(point + np.concatenate([steps, -steps]))
         changes = velocities[:, : len(steps)] - velocities[:, len(steps) :]
         return Fit(
-            problem=self.problem,
-            names=self.names,
-            sizes=self.sizes,
+            search=self,
             point=point * self.sizes,
             squares=float((soft[0] ** 2).sum()),
             misfit=float(np.abs(hard).max(initial=0.0)),
-            measured=self.measured,
             open_directions=open_directions * self.sizes[:, None],
             sensitivity=sensitivity * self.sizes[:, None],
             rank=limited_rank,
@@ -333,12 +328,10 @@ class Search:
     def _is_seen(self, fits: list[Fit], point: Array, close: float) -> bool:
         """Return True for a point that leads to an impact in ``fits``: one equal in all that is
         determined or, of measurements, one without a ridge between."""
-        if not fits:
-            return False
         key = self.invariants(point[None])[:, 0]
         if any((np.abs(fit.key - key)[fit.settled] < close).all() for fit in fits):
             return True
-        if not self.measured:
+        if not (fits and self.measured):
             return False
         ends = np.stack([fit.point / self.sizes for fit in fits])
         soft, hard = self.residuals(np.concatenate([ends, (ends + point) / 2, point[None]]))
@@ -379,8 +372,6 @@ def rank_of(sizes: Array) -> int:
 def chi_square_tail(x: float, degrees: int) -> float:
     """Return the probability of a chi-square variate above ``x`` (Abramowitz and Stegun 26.4)."""
     half, odd = x / 2, degrees % 2
-    if half > 700:
-        return 0.0
     total = math.erfc(math.sqrt(half)) if odd else 0.0
     term = math.exp(-half) * (2 * math.sqrt(half / math.pi) if odd else 1.0)
     for k in range((degrees - odd) // 2):

@@ -44,6 +44,8 @@ ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 """Ranges of coefficients that are not given (listing, lines 40 and 50)."""
+FACING = {"A": 180.0, "B": 0.0}
+"""Course of each vehicle less its heading TA or TB: A faces TA + 180."""
 LOST = {"E": 0.0, "EM": 0.0, "MUP": PIVOT}  # coefficients that leave nothing of a velocity
 FINAL = ("SAF", "HAF", "VAX", "VAY")
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
@@ -159,8 +161,8 @@ class Problem:
             if speed in known and _is_zero(known[speed]):
                 del known[speed]
                 known.pop(course, None)
-                known.setdefault(x, Amount.exactly(0.0))
-                known.setdefault(y, Amount.exactly(0.0))
+                for axis in (x, y):
+                    known.setdefault(axis, Amount.exactly(0.0))
 
     def _complete_bodies(self, known: dict[str, Amount]) -> None:
         """Treat bodies of which only the momentum is used as points; refuse missing dimensions."""
@@ -203,7 +205,7 @@ class Problem:
         values = {name: known[name].value for name in names if name in known}
         if np.isnan([*values.values()]).any() or known["GA"].varies:
             return
-        arms, _ = evaluate(placed(values), ("at", "bt"))
+        arms, _ = evaluate(with_arms(values), ("at", "bt"))
         a, b = float(arms["at"]), float(arms["bt"])
         if min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0:
             angle = known["GA"].value
@@ -252,7 +254,7 @@ class Problem:
             known["MUP"] = size.mapped(Fraction(-1)) if sign < 0 else size
             self.sign = sign
 
-    def softened(self, tolerance: float) -> Problem:
+    def soften(self, tolerance: float) -> Problem:
         """Return the problem with one tolerance, in typical sizes, for all exact motions.
 
         Exact velocities, courses, spins, impulses and energies become normal; dimensions and
@@ -364,13 +366,10 @@ class Problem:
 
     def _widest(self, name: str) -> tuple[float, float]:
         """Return the limits of a coordinate of which nothing is known."""
-        if name in SPEEDS:
-            return 0.0, WIDEST * self.speed
         if name in ANGLES:
             return -180.0, 180.0
-        if name in IMPULSES:
-            return -np.inf, np.inf
-        return -WIDEST * self.size(name), WIDEST * self.size(name)
+        reach = np.inf if name in IMPULSES else WIDEST * self.size(name)
+        return (0.0 if name in SPEEDS else -reach), reach
 
     def _leaves(self, *coefficients: str) -> bool:
         """Return False if nothing is left of a relative velocity: no inverse leads back from it
@@ -395,11 +394,11 @@ class Problem:
         values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
-            impacts = Impacts(placed({"M": 4.0 if self.point else 6.0, **values}))
+            impacts = Impacts(with_arms({"M": 4.0 if self.point else 6.0, **values}))
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 is_at_rest = impacts["S" + vehicle] < TOUCH * self.speed
                 course = np.where(is_at_rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
-                impacts.values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
+                impacts.values["T" + vehicle] = course + FACING[vehicle]
             impacts.compute(self.needed)
             if self.share:
                 impacts.values["MU"] = impacts["MUP"] / impacts["MUC"]
@@ -413,8 +412,8 @@ class Problem:
                 values[x], values[y] = components(values.pop(frame[0]), values.pop(frame[1]))
             if vehicle in self._turns_with_course:
                 x, y, _, _ = VECTORS[vehicle]
-                course = np.degrees(np.arctan2(values[y], values[x]))
-                values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
+                _, course = _polar(values[x], values[y])
+                values["T" + vehicle] = course + FACING[vehicle]
 
     def log_polar(self, names: list[str], points: Array) -> Any:
         """Return the log of the area per unit of polar coordinates."""
@@ -454,7 +453,7 @@ class Problem:
         return rows
 
 
-def placed(values: dict[str, Any]) -> dict[str, Any]:
+def with_arms(values: dict[str, Any]) -> dict[str, Any]:
     """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
     PB."""
     for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
@@ -497,7 +496,7 @@ def _is_zero(amount: Amount) -> bool:
     return not amount.varies and amount.value == 0
 
 
-def unwrapped(name: str, column: Array, middle: float | None) -> Array:
+def unwrap_angles(name: str, column: Array, middle: float | None) -> Array:
     """Return directions about a value, so that no interval crosses the half turn."""
     if name not in ANGLES:
         return column
@@ -509,9 +508,6 @@ def unwrapped(name: str, column: Array, middle: float | None) -> Array:
 
 def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:
     """Return the signs of P_t that MU leaves open (line 400 decides by the sliding)."""
-    friction = known.get("MU")
-    if friction is None or friction.share:
-        return (0,)
-    if not friction.varies and friction.value in (0.0, PIVOT):
-        return (0,)
-    return (1, -1)
+    friction = known.get("MU", Amount.exactly(0.0))
+    is_exact = not friction.varies and friction.value in (0.0, PIVOT)
+    return (0,) if friction.share or is_exact else (1, -1)

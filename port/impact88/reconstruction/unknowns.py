@@ -95,8 +95,8 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     check_names(known, (*VEHICLES, *UNKNOWNS, "MU", "M"), "quantity")
     values, _ = evaluate(known, tuple(known))  # as numbers of one shape
     if np.all(values.pop("M", BODIES) == POINT):
-        values |= {name: np.zeros(()) for name in ("DA", "DB", "PA", "PB", "WA", "WB", "PM")}
-        values |= {name: np.ones(()) for name in ("IA", "IB")}
+        values |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "PM"), np.zeros(()))
+        values |= dict.fromkeys(("IA", "IB"), np.ones(()))
         values = {"TA": np.zeros(()), "TB": np.zeros(()), **values}
     if lacking := [name for name in VEHICLES if name not in values]:
         raise UserError(missing(lacking))
@@ -129,9 +129,11 @@ def _solve(v: Mapping[str, Array], names: Sequence[str], shape: tuple[int, ...])
     mass = 1.0 / (1.0 / v["MA"] + 1.0 / v["MB"])
     sizes = np.stack([np.ones(count)] * 6 + [mass] * 3, 1) * speed
     columns = _columns(bodies, count)
-    given = [name for name in (*BEFORE, *AFTER, *COEFFICIENTS, "PM") if name in v]
-    matrix = np.stack([_row(name, v[name], columns, mass) for name in given], 1) * sizes[:, None]
-    right = np.stack([v[n] * (n in BEFORE or n in AFTER) for n in given], 1)
+    equations = [name for name in (*BEFORE, *AFTER, *COEFFICIENTS, "PM") if name in v]
+    matrix = (
+        np.stack([_row(name, v[name], columns, mass) for name in equations], 1) * sizes[:, None]
+    )
+    right = np.stack([v[n] * (n in BEFORE or n in AFTER) for n in equations], 1)
     scale = np.abs(matrix).max(2) + 1e-300
     matrix, right = matrix / scale[..., None], right / scale
     u, s, vt = np.linalg.svd(matrix)

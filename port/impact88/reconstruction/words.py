@@ -24,11 +24,9 @@ CONDITIONS = {
     "approach": "VC",
     "push": "PN",
     "energy": "EL",
-    "E": "E",
-    "EM": "EM",
     "friction": "MUP",
 }
-"""Conditions of physics, each with the result that shows by how much it is broken."""
+"""Conditions of physics with the result that shows by how much it is violated, if not their own."""
 SOURCES = {"EL": CRUSH, "MUP": ("MU",)}
 """Measured values with the entries that they may come from."""
 VERDICTS = {
@@ -43,7 +41,7 @@ def number(name: str, value: float, view: View = PLAIN) -> str:
     """Return a number with its unit, as shown."""
     shown = view.shown(name, value)
     text = f"{0.0 if abs(shown) < 1e-12 else shown:.4g}"
-    if "e+" in text and abs(shown) < 1e9:
+    if "e+" in text:
         text = f"{float(text):,.0f}"
     return f"{text} {view.unit(name)}".rstrip()
 
@@ -90,8 +88,8 @@ def question(result: Reconstruction) -> str:
 
 
 def _is_asked(result: Reconstruction, speed: str) -> bool:
-    has_motion = speed in result.values or speed in result.undetermined
-    return has_motion and speed not in result.known and not {*SPEEDS[speed]} <= result.known.keys()
+    is_known = speed in result.known or {*SPEEDS[speed]} <= result.known.keys()
+    return speed in (*result.values, *result.undetermined) and not is_known
 
 
 def evidence(result: Reconstruction, view: View = PLAIN) -> str:
@@ -143,7 +141,7 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     conditions = []
     for condition in result.broken:
         words = BROKEN.get(condition, "friction would act along the sliding")
-        name = CONDITIONS.get(condition, "")
+        name = CONDITIONS.get(condition, condition)
         if name in result.values and result.verdict == "impossible":
             words += f" ({name} {number(name, result.values[name], view)})"
         conditions.append(words)
@@ -202,10 +200,8 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
             f"{starts} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected "
             f"number not seen {unseen:.2g}"
         )
-    needs: dict[str, list[str]] = {}
-    for name, reason in result.excluded.items():
-        needs.setdefault(reason, []).append(name)
-    for reason, names in needs.items():
+    for reason in dict.fromkeys(result.excluded.values()):
+        names = [name for name in result.excluded if result.excluded[name] == reason]
         verb = "need" if len(names) > 1 else "needs"
         meaning = f" ({quantity(reason).meaning})" if "," not in reason else ""
         lines.append(f"{_join(names)} {verb} {reason}{meaning}")
