@@ -315,7 +315,7 @@ def _choose(problems: Sequence[Problem], seed: int) -> _Choice:
         fits += minima
         ends += number
     exact = sum(fit.misfit < EXACT_TOL for fit in fits)
-    search = (ends, exact, expected_unseen(exact, ends) if exact else 0.0)
+    search = (ends, exact, expected_unseen(exact, ends))
     agreeing = [fit for fit in fits if fit.misfit <= EXACT_TOL and _opposes_sliding(fit)]
     best = min(agreeing, key=lambda fit: fit.squares, default=None)
     consistent = [fit for fit in agreeing if fit.probability >= CONTRADICTION]

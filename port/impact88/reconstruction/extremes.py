@@ -69,8 +69,7 @@ def extremes(
         )
         if generation % SINGLE == 0:
             mutant = _one_coordinate_moved(points.reshape(m * n, d), box, rng).reshape(m, n, d)
-        trial = np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points)
-        trial = np.clip(trial, *box)
+        trial = np.clip(np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points), *box)
         new = heights_of(trial.reshape(m * n, d)).reshape(m, n, m)[rows, columns, rows]
         is_better = new > heights
         points[is_better], heights[is_better] = trial[is_better], new[is_better]

@@ -299,8 +299,8 @@ class Search:
             starts = self._near(first, rng) if first else self.starts(BATCH, rng)
             ends += self._collect(self.descend(starts), fits)
             count = sum(fit.misfit < EXACT_TOL for fit in fits)
-            is_full = len(fits) == MAX_IMPACTS
-            if first or is_full or not ends or expected_unseen(count, ends) < MAX_UNSEEN:
+            unseen = expected_unseen(count, ends) if ends else 0.0
+            if first or len(fits) == MAX_IMPACTS or unseen < MAX_UNSEEN:
                 break
         return sorted(fits, key=lambda fit: (fit.misfit > EXACT_TOL, fit.squares)), ends
 

@@ -38,8 +38,6 @@ class MissedLaw:
         A quantity of the same unit.
     amount : float
         Residual of the law.
-    sd : float
-        Standard deviation of the residual, 0 for exact values.
     relative : float
         The residual over its largest term.
     """
@@ -47,7 +45,6 @@ class MissedLaw:
     law: str
     like: str
     amount: float
-    sd: float
     relative: float
 
 
@@ -71,7 +68,7 @@ def missed_laws(known: Mapping[str, Amount], point: bool) -> tuple[MissedLaw, ..
         residual, sd = abs(nominal), math.hypot(*(x - nominal for x in changed))
         largest = max(abs(float(term[0])) for term in terms)
         if residual > max(TYPED_TOL * largest, SIGNIFICANT * sd):
-            laws.append(MissedLaw(law, like, residual, sd, residual / largest))
+            laws.append(MissedLaw(law, like, residual, residual / largest))
     return tuple(sorted(laws, key=lambda law: -law.relative))
 
 

@@ -501,8 +501,7 @@ def unwrap_angles(name: str, column: Array, middle: float | None) -> Array:
     if name not in ANGLES:
         return column
     if middle is None:
-        sines = np.exp(1j * np.radians(column)).mean()
-        middle = float(np.degrees(np.angle(sines)))
+        middle = float(np.angle(np.exp(1j * np.radians(column)).mean(), deg=True))
     return np.asarray(middle + (column - middle + 180.0) % 360.0 - 180.0)
 
 
