@@ -88,7 +88,7 @@ class Problem:
         self.remarks: list[str] = []
         self.assumed: dict[str, str] = {}
         self.excluded: dict[str, str] = {}  # result -> input that it needs
-        self.without_plane = self.without_arms = self.share = False
+        self.without_plane = self.without_arms = False
         self.original = dict(known)
         self.known = known = dict(known)
         kind = known.pop("M", Amount.exactly(BODIES)).value
