@@ -179,7 +179,7 @@ class Case:
                 fault = f"{quoted(name)} is not an entry of a scene{hint}"
                 raise UserError(fault, places.get(name, source))
         words = {n: t for n, t in entered.items() if n in ("units", "axes", "headings")}
-        file_view = View.of(source, **{**view.words(), **words})
+        file_view = View.of(source, **(view.words() | words))
         try:
             if not file_view.units:
                 units = system_using(
