@@ -78,6 +78,12 @@ def test_a_result_that_needs_more_is_left_out_and_says_why() -> None:
     assert any("PN" in remark and "GA" in remark for remark in answer.remarks)
 
 
+@pytest.mark.parametrize("text", [CRASH, REAR_END])
+def test_another_number_of_equations_is_named(text: str) -> None:
+    with pytest.raises(impact88.UserError, match="M is 5; expected 6 for bodies or 4"):
+        ask(Case.loads(text).with_(M="5"))
+
+
 def test_no_number_found_is_nan() -> None:
     for text in (CRASH, REAR_END, RECORDER, INTERSECTION):
         answer = ask(Case.loads(text), full=True)

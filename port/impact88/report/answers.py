@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -41,11 +42,14 @@ BACKWARD = (*"SA HA SB HB".split(), *AFTER, *CHANGES, *"E MUP EM WA WB WAF WBF L
 COMPONENTS = "DVAF DVAR DVBF DVBR P RR0 EL DT CAX CAY CBX CBY".split()
 ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
+UNIT = re.compile("[A-Za-z%°]")
+"""What an entry with a unit has."""
 POINTS = "CAF CAL CBF CBL".split()
 UNUSABLE = (
     "no impact has these values; expected masses and inertias above 0, and at most one barrier "
     "(MB = inf, IB = inf), at rest"
 )
+CLOCKS = ("PDOFA", "PDOFB")
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
 NOISE = 1e-9  # width of an interval over the value: so much is rounding
@@ -136,7 +140,7 @@ class Answer:
 
     def as_json(self) -> dict[str, Any]:
         """Return the answer as an object for JSON, with a `Row` for each entry and result."""
-        names = ("asked", "question", "evidence", "possible", "given", "remarks", "warnings")
+        names = "asked question evidence possible given remarks warnings".split()
         return {
             **{name: getattr(self, name) for name in names},
             **self.sections,
@@ -170,6 +174,10 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
     UserError
         For a case that gives too little, and for values that no impact has.
     """
+    equations = case.entries["M"].value
+    if equations not in (4, 6):
+        message = f"M is {equations:g}; expected 6 for bodies or 4 for point masses"
+        raise UserError(message, case.place("M"))
     is_scene = {*case.entries} <= {*SCENE, *POINTS}
     if is_scene and not evaluate(case.numbers, FINAL_VELOCITIES[:4])[1]:
         names = tuple(wanted) or (ALL if full else FORWARD)
@@ -306,11 +314,10 @@ def numbers_of(
                 low, high = low + turns, high + turns
             decimals, ends = decimals_in(rule, group, high - low), (low, high)
             interval = f"{round_number(low, decimals)} .. {round_number(high, decimals)}"
-        text, is_known = round_number(value, decimals), not math.isnan(value)
-        note = clock(value) if name.startswith("PDOF") and is_known else ""
-        exact = value if is_known else None
-        meaning = case.view.meaning(name)
-        rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, exact, ends)
+        text, meaning = round_number(value, decimals), quantity(name).meaning
+        note = clock(value) if text and name in CLOCKS else ""
+        result = value if text else None
+        rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, result, ends)
     return rows
 
 

@@ -47,7 +47,7 @@ TINY = 0.005  # of the largest velocity: a smaller one, or a slower spin, is not
 CORNERS = np.array([0.5 - 0.5j, 0.5 + 0.5j, -0.5 + 0.5j, -0.5 - 0.5j, 0.5 - 0.5j])
 VEHICLE = np.array([0.25 - 0.5j, 0.42, 0.25 + 0.5j, *CORNERS[[1, 0, 3, 2]], 0.25 + 0.5j])
 """Outlines that face x: fractions of length and i times width; a vehicle's front is marked."""
-VELOCITIES = {"A": ("UX", "UY", "VAX", "VAY"), "B": ("VX", "VY", "VBX", "VBY")}
+VELOCITIES = {"A": "UX UY VAX VAY".split(), "B": "VX VY VBX VBY".split()}
 SIZES = "SA SB SAF SBF DVA DVB P WA WAF WB WBF PDOFA PDOFB".split()
 """Results beside arrows, and hours."""
 NOTES_WIDTH = 76  # characters a line
@@ -159,7 +159,7 @@ class _Scene(Paper):
     def __init__(self, answer: Answer) -> None:
         super().__init__()
         values = {name: float(x) for name, x in answer.scene.items() if not math.isnan(x)}
-        if absent := [name for name in ("UX", "UY", "VX", "VY", "GA") if name not in values]:
+        if absent := [name for name in "UX UY VX VY GA".split() if name not in values]:
             raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
         sizes, _ = evaluate(values, SIZES)
         self.sizes = {name: float(x) for name, x in sizes.items() if not math.isnan(x)}

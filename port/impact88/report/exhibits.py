@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING
 
-from ..errors import UserError
+from ..errors import UserError, library
 from ..printouts import VERDICTS, Kind, Verdict, Verification, verify, words
 
 if TYPE_CHECKING:
@@ -97,11 +97,10 @@ def examine(
     if data.startswith(PICTURE_STARTS):
         if listing:
             raise UserError("--listing goes with texts, not with pictures", name)
-        try:
-            from ..pictures import verify_picture
-        except ImportError as error:
-            message = f"pictures need {error.name}; pip install 'impact88[pictures]'"
-            raise UserError(message, name) from None
+        for module in ("PIL", "scipy"):
+            library(module, "pictures", "a picture")
+        from ..pictures import verify_picture
+
         pages = [(page.verification, page) for page in verify_picture(data, name, scene=given)]
     else:
         try:
