@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -108,6 +109,38 @@ def test_json_has_a_version(line: str, folder: Path) -> None:
     assert record["version"] == impact88.__version__
 
 
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("run --sampel 1", "did you mean --sample?"),
+        ("solve crash.toml --outptus=DVA", "did you mean --outputs?"),
+        ("verify printout.txt --breif", "did you mean --brief?"),
+        ("verify printout.txt --xyz", "unrecognized arguments: --xyz (see impact88 help verify)"),
+    ],
+)
+def test_a_mistyped_option_has_a_hint(line: str, hint: str, folder: Path) -> None:
+    outcome = command(*line.split(), folder=folder)
+    assert (outcome.status, outcome.out) == (2, "")
+    assert hint in outcome.err
+
+
+@pytest.mark.parametrize(("restitution", "status"), [(0.1, 0), (0.9, 1)])
+def test_an_impact_that_gains_energy_is_adverse(restitution: float, status: int) -> None:
+    car = "MA=143.5 IA=3728 DA=7.59 GA=-30 PA=-19.8 TA=0 MU=.4 EM=1 UX=-29 UY=0 WA=0".split()
+    words = [word for entry in (*car, f"E={restitution}") for word in ("--set", entry)]
+    outcome = command("chapter", "barrier", *words)
+    assert outcome.status == status
+    assert ("kinetic energy is gained" in outcome.out) == bool(status)
+
+
+def test_values_of_a_scene_replace_those_of_a_copy(folder: Path) -> None:
+    listing = files("impact88.legacy").joinpath("impact.bas").read_text("utf-8")
+    (folder / "copy.bas").write_text(listing.replace("N = 6:M = 6", "N = 6:M = 4"), "utf-8")
+    outcome = command("run", "--sample", "1", "--listing", "copy.bas", folder=folder)
+    assert outcome.out == impact88.run(impact88.sample(1)).page
+    assert "M = 6 among them, replace those in the copy" in outcome.err
+
+
 def test_run_asks_standard_input(folder: Path) -> None:
     outcome = command("run", input=FILES["replies.txt"])
     assert "VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)" in outcome.out
@@ -193,26 +226,26 @@ def test_a_run_does_not_import_numpy() -> None:
 
 
 def test_a_broken_pipe_is_no_traceback() -> None:
-    done = process("solve", "--sample", "1", "--sweep", "MU=0:1:50000")
-    assert done.stdout is not None
-    done.stdout.readline()
-    done.stdout.close()
-    assert done.wait(60) == 141
-    assert done.stderr is not None
-    assert done.stderr.read() == ""
+    shell_run = process("solve", "--sample", "1", "--sweep", "MU=0:1:50000")
+    assert shell_run.stdout is not None
+    shell_run.stdout.readline()
+    shell_run.stdout.close()
+    assert shell_run.wait(60) == 141
+    assert shell_run.stderr is not None
+    assert shell_run.stderr.read() == ""
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 def test_a_full_disk_is_status_2() -> None:
     with open("/dev/full", "w") as full:
-        done = subprocess.run(
+        shell_run = subprocess.run(
             [sys.executable, "-m", "impact88", "run", "--sample", "1"],
             stdout=full,
             stderr=subprocess.PIPE,
             text=True,
         )
-    assert done.returncode == 2
-    assert done.stderr == "impact88 run: standard output: No space left on device\n"
+    assert shell_run.returncode == 2
+    assert shell_run.stderr == "impact88 run: standard output: No space left on device\n"
 
 
 def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
