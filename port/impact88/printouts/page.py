@@ -92,6 +92,9 @@ CELLS = tuple(
     for cell in _cells_of(row, "{ANGLES}" if row == ANGLE_ROW else text.upper())
 )
 """The page with each number as one slot; the five angles share one."""
+SLOT_CELLS = {cell.name: j for j, cell in enumerate(CELLS) if cell.kind == "slot"}
+SLOT_CELLS |= dict.fromkeys(ANGLES, SLOT_CELLS["ANGLES"])
+"""The cell of each number; the five angles share one."""
 
 
 class PrintedChar(NamedTuple):

@@ -30,6 +30,7 @@ from .page import (
     REPLIES,
     ROW_OF,
     ROWS,
+    SLOT_CELLS,
 )
 
 OWNED = re.compile(
@@ -48,10 +49,6 @@ PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
-TWINS = {name: name + "F" for name in NAMES if name + "F" in NAMES}
-TWINS |= {twin: name for name, twin in TWINS.items()}
-"""Numbers whose label is on two rows."""
-_SLOT_CELLS = {cell.name: j for j, cell in enumerate(CELLS) if cell.kind == "slot"}
 _MANY = ("ANGLES", *REPLIES)
 """Slots of several numbers."""
 
@@ -151,11 +148,23 @@ class Reading:
                 texts.setdefault(text, cost + WRONG)
         return texts
 
+    def text_of(self, name: str) -> str:
+        """Return the characters in the place of a number, "" for none."""
+        return self.slots[name].text if name in self.slots else ""
+
+    def places(self) -> dict[int, tuple[int, int]]:
+        """Return the place of each cell of which something was read."""
+        places = {j: (glyph.offset, glyph.offset + 1) for j, glyph in self.chars.items()}
+        for name, slot in self.slots.items():
+            start, stop = slot.glyphs[0].offset, slot.glyphs[-1].offset + 1
+            first, last = places.get(SLOT_CELLS[name], (start, stop))
+            places[SLOT_CELLS[name]] = min(start, first), max(stop, last)
+        return places
+
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and behind the last character of the page's own."""
-        glyphs = [*self.chars.values(), *(g for slot in self.slots.values() for g in slot.glyphs)]
-        offsets = [glyph.offset for glyph in glyphs]
-        return min(offsets), max(offsets) + 1
+        places = self.places().values()
+        return min(start for start, _ in places), max(stop for _, stop in places)
 
 
 def read_printouts(text: str) -> list[Reading]:
@@ -230,9 +239,9 @@ class _Reader:
             glyphs = glyphs[: ending.start()]
         used = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
         owners = {_owner(anchor.label) for anchor in anchors}
-        used |= {j for name, j in _SLOT_CELLS.items() if name in owners}
+        used |= {SLOT_CELLS[owner] for owner in owners if owner}
         if not PROMPT.search(chars_of(glyphs)):
-            used |= {_SLOT_CELLS[reply] for reply in REPLIES}
+            used |= {SLOT_CELLS[reply] for reply in REPLIES}
         before = Anchor(FIRST, "", 0, 0)
         for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
             cells = [j for j in _cells_between(before.label, anchor.label) if j not in used]
@@ -249,11 +258,15 @@ class _Reader:
     def _read_label(self, anchor: Anchor) -> None:
         """Give the glyphs of an anchor to the cells of its label."""
         glyphs = self.glyphs[anchor.start : anchor.stop]
-        if glyphs and anchor.label.text:
+        if glyphs:
             *cells, last = range(anchor.label.start, anchor.label.stop)
             self.reading.chars |= dict(zip(cells, glyphs[:-1], strict=False))
             self.reading.chars[last] = glyphs[-1]
-            if anchor.read != anchor.label.text:
+            words = [c for c in CELLS[: anchor.label.stop] if c.name == anchor.label.name]
+            letters = iter("".join(cell.char for cell in words))
+            is_rest = all(char in letters for char in anchor.read)  # of a label that lost letters
+            is_whole = glyphs[0].gap > 0 or self.glyphs[anchor.start - 1].char == "("
+            if is_whole and not is_rest:
                 self.reading.other_labels[anchor.label.start] = glyphs[:-1]
 
     def _read_between(
@@ -278,7 +291,7 @@ class _Reader:
         else:
             rest = glyphs
             if owner:
-                cells = [_SLOT_CELLS[owner], *cells]
+                cells = [SLOT_CELLS[owner], *cells]
         if rest:
             slots = self._align(rest, cells, before.label, behind, is_exact and not count) | slots
         for name, slot in slots.items():
@@ -432,7 +445,7 @@ def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
 @lru_cache(maxsize=len(NAMES))
 def _next_label(name: str) -> list[int]:
     """Return the cells of the words between a number and the next one of its row."""
-    start = _SLOT_CELLS[name] + 1
+    start = SLOT_CELLS[name] + 1
     stop = next((j for j in range(start, len(CELLS)) if CELLS[j].kind != "word"), start)
     is_last = stop == len(CELLS) or CELLS[stop].kind == "between"
     return [] if is_last else [*range(start, stop)]
