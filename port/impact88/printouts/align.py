@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 from .costs import ALIKE, FOREIGN, LOST, WRONG
 from .glyphs import LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
-from .page import Cell
+from .page import MANY, Cell
 
-Pair = tuple[int | None, int | None]
-Costs = NDArray[np.int64]
-SCALE = 1000
-"""Costs are compared as whole numbers, so that the way back through the table is exact."""
+Place = tuple[int, bool]
+"""Number of cells up to a glyph, and whether it is in the last of them or added after it."""
+Costs = NDArray[np.float64]
+PLACES = 6
+"""Decimal places to which costs are compared."""
 _IN_NUMBERS = "".join(LOOKALIKES[char] for char in NUMBER_CHARS)
 
 
@@ -65,29 +66,11 @@ class Aligner:
 
     def __init__(self, cells: Sequence[Cell]) -> None:
         self.cells = cells
-        self.lost = [0 if cell.kind == "between" else round(SCALE * LOST) for cell in cells]
-        self.lost_sums = np.cumsum([0, *self.lost])
-        self.own_gaps = np.array([self._own_gap(j) for j in range(len(cells))], np.int64)
-        self.added_gaps = np.array([self._added_gap(j) for j in range(-1, len(cells))], np.int64)
+        lost = [0.0 if cell.kind == "between" else LOST for cell in cells]
+        self.lost_sums = np.cumsum([0.0, *lost])
+        self.own_gaps = np.array([_own_gaps(cells, j) for j in range(len(cells))])
+        self.added_gaps = np.array([[0.0] * 4, *map(_added_gaps, cells)])
         self._costs: dict[str, tuple[Costs, Costs]] = {}
-
-    def _own_gap(self, j: int) -> list[int]:
-        """Return the cost of each width of gap before a glyph in a cell."""
-        cell = self.cells[j]
-        if cell.kind != "word":
-            return [0, 0, 0, 0]
-        if not cell.first:
-            return [0, *[round(SCALE * ALIKE)] * 2, round(SCALE * WRONG)]
-        is_behind_number = cell.char.isalpha() and j > 0 and self.cells[j - 1].kind == "slot"
-        return [round(SCALE * FOREIGN) * is_behind_number, 0, 0, 0]
-
-    def _added_gap(self, j: int) -> list[int]:
-        """Return the cost of each width of gap before a glyph added after a cell."""
-        if j < 0 or self.cells[j].kind != "slot":
-            return [0, 0, 0, 0]
-        if self.cells[j].name in ("ANGLES", "REPLY_A", "REPLY_B"):
-            return [0, 0, 0, round(SCALE * FOREIGN)]
-        return [0, *[round(SCALE * FOREIGN)] * 2, round(SCALE * WRONG)]
 
     def _costs_of(self, char: str) -> tuple[Costs, Costs]:
         """Return the costs of a character in each cell, and of it added after each."""
@@ -99,55 +82,59 @@ class Aligner:
                 for cell, cost in zip(self.cells, own, strict=True)
             ]
             added[-1] = min(added[-1], outside)
-            self._costs[char] = (
-                np.rint(SCALE * np.array(own)).astype(np.int64),
-                np.rint(SCALE * np.array([FOREIGN, *added])).astype(np.int64),
-            )
+            self._costs[char] = np.array(own), np.array([FOREIGN, *added])
         return self._costs[char]
 
-    def _pass_cells(self, row: Costs) -> Costs:
-        """Return the costs of a row of the table with cells lost."""
-        costs: Costs = np.minimum.accumulate(row - self.lost_sums) + self.lost_sums
-        return costs
-
-    def align(self, glyphs: Sequence[Glyph]) -> list[Pair]:
+    def align(self, glyphs: Sequence[Glyph]) -> list[Place]:
         """Return the cheapest alignment.
 
         Parameters
         ----------
         glyphs : sequence of Glyph
-            What stands in the text.
+            What is in the text.
 
         Returns
         -------
-        list of pairs
-            Index of a glyph and of its cell, in order; None for an added glyph's cell and for a
-            lost cell's glyph.
+        list of Place
+            The place of each glyph.
         """
-        table = np.empty((len(glyphs) + 1, len(self.cells) + 1), np.int64)
-        first = np.full(len(self.cells) + 1, 10**6 * SCALE)
-        first[0] = 0
-        table[0] = self._pass_cells(first)
-        for i, glyph in enumerate(glyphs):
+        row = self.lost_sums
+        steps = []  # for each number of cells passed: that at the glyph, and whether it has a cell
+        for glyph in glyphs:
             own, added = self._costs_of(glyph.char)
-            row = table[i] + added + self.added_gaps[:, glyph.gap]
-            np.minimum(row[1:], table[i, :-1] + own + self.own_gaps[:, glyph.gap], out=row[1:])
-            table[i + 1] = self._pass_cells(row)
-        return self._trace(table, glyphs)
+            own_row = np.append(np.inf, row[:-1] + own + self.own_gaps[:, glyph.gap])
+            costs = (row + added + self.added_gaps[:, glyph.gap]).round(PLACES)
+            is_own = own_row.round(PLACES) <= costs
+            costs = (np.where(is_own, own_row, costs) - self.lost_sums).round(PLACES)
+            least = np.minimum.accumulate(costs)
+            is_less = np.append(True, costs[1:] < least[:-1])
+            at = np.maximum.accumulate(np.where(is_less, np.arange(len(costs)), 0))
+            steps.append((at.tolist(), is_own.tolist()))
+            row = least + self.lost_sums
+        places: list[Place] = []
+        j = len(self.cells)
+        for at, is_own in reversed(steps):
+            j = at[j]
+            places.append((j, is_own[j]))
+            j -= is_own[j]
+        return places[::-1]
 
-    def _trace(self, table: Costs, glyphs: Sequence[Glyph]) -> list[Pair]:
-        """Return the way back through the table."""
-        pairs: list[Pair] = []
-        i, j = len(glyphs), len(self.cells)
-        while i or j:  # of ways of equal cost the one with the first cells
-            if j and table[i, j - 1] + self.lost[j - 1] == table[i, j]:
-                j -= 1
-                pairs.append((None, j))
-                continue
-            i -= 1
-            own, _ = self._costs_of(glyphs[i].char)
-            step = own[j - 1] + self.own_gaps[j - 1, glyphs[i].gap]
-            is_own = bool(j) and table[i, j - 1] + step == table[i + 1, j]
-            j -= is_own
-            pairs.append((i, j if is_own else None))
-        return pairs[::-1]
+
+def _own_gaps(cells: Sequence[Cell], j: int) -> list[float]:
+    """Return the cost of each width of gap before a glyph in a cell."""
+    cell = cells[j]
+    if cell.kind != "word":
+        return [0.0, 0.0, 0.0, 0.0]
+    if not cell.first:
+        return [0.0, ALIKE, ALIKE, WRONG]
+    is_behind_number = cell.char.isalpha() and j > 0 and cells[j - 1].kind == "slot"
+    return [FOREIGN * is_behind_number, 0.0, 0.0, 0.0]
+
+
+def _added_gaps(cell: Cell) -> list[float]:
+    """Return the cost of each width of gap before a glyph added after a cell."""
+    if cell.kind != "slot":
+        return [0.0, 0.0, 0.0, 0.0]
+    if cell.name in MANY:
+        return [0.0, 0.0, 0.0, FOREIGN]
+    return [0.0, FOREIGN, FOREIGN, WRONG]

@@ -104,13 +104,13 @@ def _causes(verification: Verification) -> Iterator[tuple[str, Mapping[str, str]
     turned = {**scene, "MU": opposite(scene["MU"])}
     yield f"computed with M = {other} (line 350)", printed_fields({**scene, "M": other}), 0.0
     yield "computed with the other sign of MU (line 400)", printed_fields(turned), 0.0
+    causes: list[tuple[str, Arithmetic, float]] = [(DOUBLE, FLOAT64, 0.0)]
     energy = verification.numbers["KI"]
-    is_short = _digits(energy.read) <= SINGLE_DIGITS
-    if is_short and _digits(energy.printed) > SINGLE_DIGITS:
-        yield SINGLE, _run_in(scene, FLOAT32), SINGLE_ERROR
-    yield DOUBLE, _run_in(scene, FLOAT64), 0.0
-    if is_short:
-        yield SINGLE, _run_in(scene, FLOAT32), SINGLE_ERROR
+    if _digits(energy.read) <= SINGLE_DIGITS:
+        is_rounded = _digits(energy.printed) > SINGLE_DIGITS
+        causes.insert(not is_rounded, (SINGLE, FLOAT32, SINGLE_ERROR))
+    for cause, arithmetic, error in causes:
+        yield cause, _run_in(scene, arithmetic), error
     near = {name: number.printed for name, number in verification.numbers.items()}
     yield (
         "off in the last places: another arithmetic, or rounding where INT floors",

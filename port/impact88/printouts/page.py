@@ -30,6 +30,8 @@ ANGLE_ROW = 5
 ASTERISKS = (10, 14)
 ANGLES = ("PA", "PB", "TA", "TB", "GA")
 REPLIES = {"REPLY_A": ("UX", "UY", "WA"), "REPLY_B": ("VX", "VY", "WB")}
+MANY = ("ANGLES", *REPLIES)
+"""Places of several numbers."""
 NAMES = tuple(re.findall(r"{(\w+)}", " ".join(ROWS[2:])))
 """The printed numbers, in order."""
 INPUTS = tuple("MA MB IA IB DA DB PA PB TA TB GA UX UY WA VX VY WB E MUP EM".split())

@@ -25,7 +25,7 @@ from .page import (
     ASTERISKS,
     CELLS,
     HEADING,
-    NAMES,
+    MANY,
     PROMPTS,
     REPLIES,
     ROW_OF,
@@ -49,8 +49,6 @@ PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
-_MANY = ("ANGLES", *REPLIES)
-"""Slots of several numbers."""
 
 
 @dataclass
@@ -197,14 +195,7 @@ def read_printouts(text: str) -> list[Reading]:
         below = pages[k + 1][0] if k + 1 < len(pages) else len(cuts) - 1
         first = max(page[0] - 2 * page[2], above)
         last = min(page[1] + 2 * (len(ROWS) - page[3]), below - 1)
-        reading = _Reader(text, glyphs[cuts[first] : cuts[last + 1]]).read()
-        line = glyphs[cuts[page[0] - 1] : cuts[page[0]]] if page[0] > above else []
-        if (
-            find_labels(line)
-            and text.count("\n", line[-1].offset, glyphs[cuts[page[0]]].offset) < 2
-        ):
-            reading.foreign.append(line)  # a note right above the page
-        printouts.append(reading)
+        printouts.append(_Reader(text, glyphs[cuts[first] : cuts[last + 1]]).read())
     return [reading for reading in printouts if reading.is_printout]
 
 
@@ -250,9 +241,7 @@ class _Reader:
             if anchor.label.start <= before.label.start:
                 reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
             before = anchor
-        self._find_bounds()
         self._split_replies()
-        self._split_angles()
         return reading
 
     def _read_label(self, anchor: Anchor) -> None:
@@ -273,21 +262,23 @@ class _Reader:
         self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]
     ) -> None:
         """Read what stands between two anchors: the number that the first owns, and the rest."""
-        owner = _owner(before.label)
+        owner, row = _owner(before.label), before.label.row
         is_exact = before.read == before.label.text
         count = self._count_owned(glyphs, before.label, behind)
         slots: dict[str, Slot] = {}
         if count:
             slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
+            ends = [glyph.gap > 0 or glyph.char in ")%" for glyph in glyphs[count : count + 1]]
+            is_label = any(glyph.char.isalpha() for glyph in glyphs[count : count + 1])
+            is_last = not any(CELLS[j].kind == "slot" for j in cells if CELLS[j].row == row)
+            slot.is_bounded = all(ends) and (is_last or is_label)
             slots[owner] = slot
+            if owner not in MANY and is_last:  # nothing else belongs there
+                torn = _count_torn(glyphs[count:])
+                slot.is_torn = torn > 0
+                slot.glyphs += glyphs[count : count + torn]
+                count += torn
             rest = glyphs[count:]
-            if owner == "ANGLES":
-                head, *lines = split_at_gaps(slot.glyphs, LINE_GAP)
-                if lines and head[0].gap != LINE_GAP:
-                    self.reading.foreign.append(head)  # behind the heading
-                    slot.glyphs = slot.glyphs[len(head) :]
-            elif owner not in REPLIES:
-                rest = _join_torn(slot, rest, owner, cells)
         else:
             rest = glyphs
             if owner:
@@ -295,7 +286,10 @@ class _Reader:
         if rest:
             slots = self._align(rest, cells, before.label, behind, is_exact and not count) | slots
         for name, slot in slots.items():
-            self._add_slot(name, slot)
+            if name == "ANGLES":
+                self._add_angles(slot)
+            else:
+                self._add_slot(name, slot)
 
     def _count_owned(self, glyphs: Sequence[Glyph], before: Label, behind: Label) -> int:
         """Return how many glyphs are the number, or the numbers, of the label before them."""
@@ -305,6 +299,17 @@ class _Reader:
             is_next = behind.name in ("REPLY_B", "MA") and behind.row == before.row + 1
             return len(glyphs) if is_next or self.reading.ending else _end_of_line(glyphs, 1)
         return _count_number(glyphs) if before.text.endswith("=") else 0
+
+    def _add_angles(self, row: Slot) -> None:
+        """Add the angles of a row, which are read only if there are five."""
+        words = [*_angle_words(row.glyphs)]
+        with_digits = [word for word in words if re.search("[0-9]", chars_of(word))]
+        numbers = [word for word in words if readings(chars_of(word))]
+        five = with_digits if len(with_digits) == len(ANGLES) else numbers
+        if len(five) == len(ANGLES):
+            for name, word in zip(ANGLES, five, strict=True):
+                self._add_slot(name, Slot(word, row.label, any(glyph.gap for glyph in word[1:])))
+            self.reading.foreign += [word for word in words if word not in five]
 
     def _add_slot(self, name: str, slot: Slot) -> None:
         """Add what stands in the place of a number, or a second such thing."""
@@ -328,35 +333,31 @@ class _Reader:
 
         A number without a label counts only if its line has as many numbers as places.
         """
-        pairs = (
-            _aligner(tuple(cells)).align(glyphs)
-            if cells
-            else [(i, None) for i in range(len(glyphs))]
-        )
+        aligner = _aligner(tuple(cells))
         own: dict[str, list[int]] = {}
-        labelled: set[str] = {*_MANY}
+        labelled: set[str] = {*MANY}
         foreign: set[int] = set()
-        last = ""
-        for i, j in pairs:
-            cell = CELLS[cells[j]] if j is not None else None
-            if cell:
-                last = cell.name if cell.kind == "slot" else ""
-            if i is None:
-                continue
-            if cell and cell.kind == "slot":
-                own[cell.name] = [i]
-            elif cell and cell.kind == "word":
-                self.reading.chars[cells[j or 0]] = glyphs[i]
-                if cell.char == glyphs[i].char != "=":
-                    labelled.add(cell.name)
-            elif not cell and last in own and (glyphs[i].gap < LINE_GAP or last in _MANY):
-                own[last].append(i)
+        for i, (k, is_own) in enumerate(aligner.align(glyphs) if cells else ()):
+            j = cells[k - 1]
+            name, kind = CELLS[j].name, CELLS[j].kind if k else ""
+            if is_own and kind == "slot":
+                own[name] = [i]
+            elif is_own and kind == "word":
+                self.reading.chars[j] = glyphs[i]
+                if CELLS[j].char == glyphs[i].char != "=":
+                    labelled.add(name)
+            elif (
+                kind == "slot"
+                and own.get(name, [])[-1:] == [i - 1]
+                and (glyphs[i].gap < LINE_GAP or name in MANY)
+            ):
+                own[name].append(i)
             else:
                 foreign.add(i)
-                last = ""
+        if not cells:
+            foreign = {*range(len(glyphs))}
         slots: dict[str, Slot] = {}
         for name, members in own.items():
-            _take_sign(glyphs, members, foreign)
             places = sum(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells)
             is_whole = _is_whole(glyphs, members)
             is_single = is_whole and places == _count_numbers(glyphs, members, own)
@@ -367,30 +368,17 @@ class _Reader:
                 foreign.update(members)
                 continue
             text = chars_of([glyphs[i] for i in members])
-            if (note := WORDS.search(text)) and name not in _MANY:
+            if (note := WORDS.search(text)) and name not in MANY:
                 foreign.update(members[note.start() :])
                 members = members[: note.start()]
             slot = Slot([glyphs[i] for i in members], label, not is_whole)
-            slot.is_torn |= name not in _MANY and any(glyph.gap for glyph in slot.glyphs[1:])
+            slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
             if members:
                 slots[name] = slot
         kept = _within_page(glyphs, foreign, before is FIRST, behind is LAST)
         for _, run in groupby(enumerate(kept), lambda pair: pair[1] - pair[0]):
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
-
-    def _find_bounds(self) -> None:
-        """Find the numbers that do not end where the program ends them."""
-        at = {glyph.offset: k for k, glyph in enumerate(self.glyphs)}
-        for name, slot in [*self.reading.slots.items(), *self.reading.repeated]:
-            if name in _MANY:
-                continue
-            behind = self.glyphs[at[slot.glyphs[-1].offset] + 1 :][:1]
-            is_apart = all(glyph.gap or glyph.char in ")%" for glyph in behind)
-            label = _next_label(name)
-            slot.is_bounded = is_apart and (
-                not label or any(j in self.reading.chars for j in label)
-            )
 
     def _split_replies(self) -> None:
         """Split the replies into their numbers."""
@@ -399,30 +387,6 @@ class _Reader:
                 texts = re.split("[,;]", slot.text)
                 if len(texts) == len(names) and all(texts):
                     self.reading.replies |= dict(zip(names, texts, strict=True))
-
-    def _split_angles(self) -> None:
-        """Split the row of angles, which are read only if there are five."""
-        reading = self.reading
-        if row := reading.slots.pop("ANGLES", None):
-            words = [*_angle_words(row.glyphs)]
-            with_digits = [word for word in words if re.search("[0-9]", chars_of(word))]
-            numbers = [word for word in words if readings(chars_of(word))]
-            for five in (with_digits, numbers):
-                if len(five) == len(ANGLES):
-                    slots = [
-                        Slot(word, row.label, any(glyph.gap for glyph in word[1:])) for word in five
-                    ]
-                    reading.slots |= dict(zip(ANGLES, slots, strict=True))
-                    reading.foreign += [word for word in words if word not in five]
-                    break
-        repeated = reading.repeated
-        for k, (name, slot) in enumerate([*repeated]):
-            words = [*split_at_gaps(slot.glyphs)] if name == "ANGLES" else []
-            if len(words) == len(ANGLES):
-                repeated[k : k + 1] = [
-                    (angle, Slot(word, slot.label))
-                    for angle, word in zip(ANGLES, words, strict=True)
-                ]
 
 
 def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
@@ -435,20 +399,11 @@ def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
             sign = [*sign, *word]
             continue
         cuts = [0, *(match.end() for match in re.finditer("[0-9](?=-)", text)), len(word)]
-        for a, b in pairwise(cuts):
-            yield [*sign, *word[a:b]]
-            sign = []
+        yield [*sign, *word[: cuts[1]]]
+        yield from ([*word[a:b]] for a, b in pairwise(cuts[1:]))
+        sign = []
     if sign:
         yield sign
-
-
-@lru_cache(maxsize=len(NAMES))
-def _next_label(name: str) -> list[int]:
-    """Return the cells of the words between a number and the next one of its row."""
-    start = SLOT_CELLS[name] + 1
-    stop = next((j for j in range(start, len(CELLS)) if CELLS[j].kind != "word"), start)
-    is_last = stop == len(CELLS) or CELLS[stop].kind == "between"
-    return [] if is_last else [*range(start, stop)]
 
 
 def _owner(label: Label) -> str:
@@ -492,18 +447,8 @@ def _count_number(glyphs: Sequence[Glyph]) -> int:
     return len(text) if is_number and readings(text) else 0
 
 
-def _join_torn(
-    slot: Slot, rest: Sequence[Glyph], name: str, cells: Sequence[int]
-) -> Sequence[Glyph]:
-    """Add the words with digits that follow a number to it, if nothing else belongs there.
-
-    Returns what is left.
-    """
-    row = [CELLS[j] for j in cells if CELLS[j].row == ROW_OF[name]]
-    marks = [cell.char for cell in row if cell.name == name]
-    is_mark_lost = not any(glyph.char in marks for glyph in rest)
-    if any(cell.kind == "slot" for cell in row) or (marks and is_mark_lost):
-        return rest
+def _count_torn(rest: Sequence[Glyph]) -> int:
+    """Return how many glyphs of words with digits follow a number."""
     count = 0
     for word in split_at_gaps(rest):
         digits = len(chars_of(word).rstrip(")%"))
@@ -512,24 +457,12 @@ def _join_torn(
         count += digits
         if digits < len(word):
             break
-    slot.glyphs += rest[:count]
-    slot.is_torn |= count > 0
-    return rest[count:]
+    return count
 
 
 @lru_cache(maxsize=500)
 def _aligner(cells: tuple[int, ...]) -> Aligner:
     return Aligner([CELLS[j] for j in cells])
-
-
-def _take_sign(glyphs: Sequence[Glyph], members: list[int], foreign: set[int]) -> None:
-    """Give a number the sign or point before it."""
-    at = members[0]
-    while at and (at - 1 in foreign or glyphs[at - 1].char == "=") and glyphs[at].gap < WIDE_GAP:
-        at -= 1
-    ahead = [i for i in range(at, members[0]) if i in foreign and glyphs[i].char in "-.~"]
-    members[:0] = ahead
-    foreign.difference_update(ahead)
 
 
 def _within_page(

@@ -16,7 +16,6 @@ from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import Glyph, plain_char
 from .numerals import TYPED, as_printed, is_same_value, readings
 from .page import (
-    ANGLES,
     ASTERISKS,
     CELLS,
     INPUTS,
