@@ -24,7 +24,7 @@ OPTIONS = (
     options.texts("--set", "NAME=VALUE", "a value of all rows"),
     options.UNITS,
     flag("--no-causes", "look for no mistakes"),
-    option("--kit", metavar="ID or FOLDER", help="judge answers to this kit"),
+    option("--kit", metavar="ID", help="judge answers to this kit: 1988.1"),
     options.output_file("--junit", "FILE", "write a JUnit report"),
     options.JSON,
     options.OUTPUT,

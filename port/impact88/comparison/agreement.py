@@ -17,7 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.solve import solve
-from ..names import RESULTS
+from ..names import (
+    ENERGY,
+    IMPULSE,
+    NUMBER,
+    PERCENT,
+    RESULTS,
+    SPIN,
+    TURNING,
+    VELOCITY,
+)
 from .evaluation import Floats, Program
 from .spellings import COLUMNS, VELOCITIES
 
@@ -132,29 +141,18 @@ def _scales(scene: Mapping[str, Floats], values: Mapping[str, Floats]) -> dict[s
         return reduce(np.fmax, [np.abs(column) for column in columns])
 
     before = [scene[name] for name in ("UX", "UY", "VX", "VY")]
-    speed = largest(*before, *(values[name] for name in VELOCITIES[:4]))
-    spin = largest(scene["WA"], scene["WB"], values["WAF"], values["WBF"])
     impulse = np.hypot(values["PN"], values["PT"])
-    turning = largest(values["PM"], impulse * scene["DA"], impulse * scene["DB"])
-    ratio = largest(1.0, values["MUC"])
-    energy = largest(values["KI"], values["KF"])
-    loss = largest(100.0, values["LOSS"])
     kinds = {
-        "W": spin,
-        "K": energy,
-        "EL": energy,
-        "L": loss,
-        "MU": ratio,
-        "PN": impulse,
-        "PT": impulse,
-        "PM": turning,
+        VELOCITY: largest(*before, *(values[name] for name in VELOCITIES[:4])),
+        SPIN: largest(scene["WA"], scene["WB"], values["WAF"], values["WBF"]),
+        IMPULSE: impulse,
+        TURNING: largest(values["PM"], impulse * scene["DA"], impulse * scene["DB"]),
+        NUMBER: largest(1.0, values["MUC"]),
+        ENERGY: largest(values["KI"], values["KF"]),
+        PERCENT: largest(100.0, values["LOSS"]),
     }
     size = len(scene["UX"])
-    scales = {}
-    for name in values:
-        kind = next((k for k in kinds if name.startswith(k)), "")
-        scales[name] = np.abs(np.broadcast_to(kinds.get(kind, speed), size))
-    return scales
+    return {name: np.broadcast_to(kinds[RESULTS[name].unit], size) for name in values}
 
 
 @np.errstate(all="ignore")

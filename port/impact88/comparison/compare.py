@@ -37,7 +37,7 @@ def compare(
         The scenes and the results, by `impact88.names`; a file ends in ``.csv`` or ``.jsonl``.
         Texts are judged by the digits that they are written with.
     kit : str, optional
-        The id or folder of a kit of test vectors that the table answers. The scenes are the kit's,
+        The id of the kit of test vectors that the table answers, 1988.1. The scenes are the kit's,
         and every vector must be answered.
     values : mapping of str to float, optional
         Values of columns of the scene that the table lacks.

@@ -217,42 +217,41 @@ def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
 
 def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candidate | None:
     """Return the likeliest program that gives the rows, and those kept out of the search."""
+    causes = (_confirmed(stage, sample, held_out) for stage in _stages(sample, part))
+    return next((cause for cause in causes if cause is not None), None)
 
-    def confirm(candidates: Sequence[Candidate]) -> Candidate | None:
-        usable = [c for c in candidates if is_complete(c.rows, sample)]
-        best = max((score(c.rows, sample) for c in usable), default=0)
-        margin = MARGIN * sample.wrong.size
-        usable.sort(key=lambda c: (score(c.rows, sample) < best - margin, c.rank))
-        for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
-            if is_complete(candidate.gives(held_out), held_out):
-                texts = [c.text for c in usable[place + 1 :] if c.condition == candidate.condition]
-                distinct_texts = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
-                return candidate._replace(alternatives=distinct_texts[:MAX_ALTERNATIVES])
-        return None
 
+def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
+    """Yield candidates: one edit, one under a condition, a constant, two edits."""
     names = NAMES if part == "velocities" else NAMES[:1]
     singles = search(sample, part, names)
-    if (cause := confirm(singles)) is not None:
-        return cause
-    if (cause := confirm(_conditional(singles, sample))) is not None:
-        return cause
+    yield singles
+    yield _conditional(singles, sample)
     constants = [
         Candidate(name, (edit,), sample.fits(sample.program(name, (edit,)).base)[0])
         for name in names
         for edit in fit_constants(sample, name, part)
     ]
-    if (cause := confirm([*constants, *_conditional(constants, sample)])) is not None:
-        return cause
-    for base in _bases(singles, sample):
-        pairs = search(sample, part, (base.name,), base.edits)
-        if (cause := confirm([*pairs, *_conditional(pairs[:10], sample)])) is not None:
-            return cause
-    return None
-
-
-def _bases(singles: Sequence[Candidate], sample: Sample) -> list[Candidate]:
-    """Return the edits on top of which a second one is looked for."""
+    yield [*constants, *_conditional(constants, sample)]
     harmless = [
         c for c in singles if (c.rows & ~sample.wrong).sum() >= REQUIRED * (~sample.wrong).sum()
     ]
-    return _distinct(harmless)[:MAX_BASES]
+    for base in _distinct(harmless)[:MAX_BASES]:
+        pairs = search(sample, part, (base.name,), base.edits)
+        yield [*pairs, *_conditional(pairs[:10], sample)]
+
+
+def _confirmed(
+    candidates: Sequence[Candidate], sample: Sample, held_out: Sample
+) -> Candidate | None:
+    """Return the likeliest candidate that gives the rows kept out of the search, too."""
+    usable = [c for c in candidates if is_complete(c.rows, sample)]
+    best = max((score(c.rows, sample) for c in usable), default=0)
+    margin = MARGIN * sample.wrong.size
+    usable.sort(key=lambda c: (score(c.rows, sample) < best - margin, c.rank))
+    for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
+        if is_complete(candidate.gives(held_out), held_out):
+            texts = [c.text for c in usable[place + 1 :] if c.condition == candidate.condition]
+            distinct_texts = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
+            return candidate._replace(alternatives=distinct_texts[:MAX_ALTERNATIVES])
+    return None

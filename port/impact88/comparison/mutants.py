@@ -212,13 +212,13 @@ def _twin_sites(
 
     ``pairs`` of names, such as the parts of a vector, may be written for a pair.
     """
-    nodes = [(s, node) for s in statements for node in _nodes(parse(s.text))]
+    trees = [[(s, node) for node in _nodes(parse(s.text))] for s in statements]
+    groups: list[tuple[tuple[Statement, ast.expr], ...]]
     if len(statements) > 1:
-        trees = [[(s, node) for node in _nodes(parse(s.text))] for s in statements]
         groups = list(zip(*trees, strict=True))
     else:
         forms: dict[str, list[tuple[Statement, ast.expr]]] = {}
-        for statement, node in nodes:
+        for statement, node in trees[0]:
             if not isinstance(node, ast.Name | ast.Constant):
                 forms.setdefault(_form(node), []).append((statement, node))
         groups = [g for members in forms.values() for g in combinations(members, 2)]

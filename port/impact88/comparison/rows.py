@@ -6,12 +6,12 @@ import numpy as np
 
 from .agreement import Bools
 from .evaluation import Floats
+from .numbers import spread
 from .spellings import VELOCITIES
 
 MIN_COLUMNS = 4  # velocities that identify a row
 MIN_ROWS = 4
-MAX_ROWS = 2000  # that are looked up
-MAX_NEIGHBOURS = 8  # rows of nearly the same first velocity
+MAX_ROWS = 50  # that are looked up
 MIN_FRACTION = 0.9  # of the rows that hold another row's results
 SINGLE_ROUNDING = 2.0**29  # of a rounding in double precision: 52 bits less 23
 
@@ -26,20 +26,16 @@ def other_rows(
     names = [name for name in VELOCITIES if name in theirs]
     if len(names) < MIN_COLUMNS or wrong.sum() < MIN_ROWS:
         return ""
-    rows = np.flatnonzero(wrong)[:MAX_ROWS]
-    order = np.argsort(ours[names[0]], kind="stable")
-    sorted_values = ours[names[0]][order]
-    first, tolerance = theirs[names[0]][rows], limits[names[0]][rows]
-    starts = np.searchsorted(sorted_values, first - tolerance)
-    stops = np.minimum(np.searchsorted(sorted_values, first + tolerance), starts + MAX_NEIGHBOURS)
+    rows = spread(np.flatnonzero(wrong), MAX_ROWS)
     shifts = []
-    for row, start, stop in zip(rows, starts, stops, strict=True):
-        for other in order[start:stop]:
-            if other != row and all(
-                abs(ours[n][other] - theirs[n][row]) <= limits[n][row] for n in names
-            ):
-                shifts.append(int(other - row))
-                break
+    for row in rows:
+        places = np.arange(wrong.size)
+        for name in names:
+            off = np.abs(ours[name][places] - theirs[name][row])
+            places = places[off <= limits[name][row]]
+        places = places[places != row]
+        if places.size:
+            shifts.append(int(places[0] - row))
     if len(shifts) < MIN_FRACTION * rows.size:
         return ""
     values, counts = np.unique(shifts, return_counts=True)
@@ -62,8 +58,8 @@ def single_precision(ours: Floats, theirs: Floats, bounds: Floats, units: Floats
 
     ``bounds`` is what rounding may change in double precision.
     """
-    known = np.isfinite(ours) & np.isfinite(theirs)
+    is_number = np.isfinite(ours) & np.isfinite(theirs)
     with np.errstate(all="ignore"):
         close = np.abs(theirs - ours) <= SINGLE_ROUNDING * bounds + units / 2
         single = np.abs(theirs - theirs.astype(np.float32)) <= units / 2
-    return bool((close & single)[known].all())
+    return bool((close & single)[is_number].all())
