@@ -31,7 +31,7 @@ SYSTEMS = {  # length, mass, time of a unit, in feet, slugs, seconds
 }
 
 
-def converted(
+def convert(
     columns: Mapping[str, Any], system: tuple[float, float, float]
 ) -> dict[str, np.ndarray]:
     """Return columns in a system of units."""
@@ -74,7 +74,7 @@ class TestBound:
     def test_relative_errors_are_judged_alike_in_all_units(self, system: str) -> None:
         rows = slice(0, None, 6)
         scene = {name: column[rows] for name, column in SCENE.items()}
-        scene = converted(scene, SYSTEMS[system])
+        scene = convert(scene, SYSTEMS[system])
         right = impact88.solve(scene, VELOCITIES)
         notes = []
         for factor in (1e-15, 1e-12, 1e-8):
@@ -119,10 +119,10 @@ class TestBound:
 
 class TestDigits:
     def test_the_longest_number_of_a_column_tells_its_digits(self) -> None:
-        found = units({"VAX": ["1.25", "10.5", "-3"], "WAF": ["0", "0.0"], "VBX": ["1.5E3"]})
-        assert found["VAX"].tolist() == [0.01, 0.1, 0.01]
-        assert found["WAF"].tolist() == [0.01, 0.01]
-        assert found["VBX"].tolist() == [100.0]
+        steps = units({"VAX": ["1.25", "10.5", "-3"], "WAF": ["0", "0.0"], "VBX": ["1.5E3"]})
+        assert steps["VAX"].tolist() == [0.01, 0.1, 0.01]
+        assert steps["WAF"].tolist() == [0.01, 0.01]
+        assert steps["VBX"].tolist() == [100.0]
 
     def test_doubles_are_exact(self) -> None:
         assert units({"VAX": [1.0, 2 / 3]})["VAX"].max() <= 1e-16

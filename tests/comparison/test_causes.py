@@ -105,8 +105,8 @@ class TestMistakes:
     @long
     def test_a_unit_of_rounded_results_is_named(self) -> None:
         theirs = impact88.solve({**SCENE, "MB": SCENE["MB"] * 32.174}, VELOCITIES)
-        rounded = {name: np.char.mod("%.3f", column) for name, column in theirs.items()}
-        (cause,) = impact88.compare({**SCENE, **rounded}).causes
+        texts = {name: np.char.mod("%.3f", column) for name, column in theirs.items()}
+        (cause,) = impact88.compare({**SCENE, **texts}).causes
         assert cause.edit == "MB multiplied by 32.174, as read (weight for mass, in ft and s)"
 
     @long

@@ -23,12 +23,12 @@ CALLS = 20  # of each routine, evenly spread over the captures
 
 
 def test_a_session_types_the_listing_and_reads_memory() -> None:
-    expected = run(sample(1), dos=False)
-    session = Session(rom(expected.printout, expected.reals, expected.A))
+    reference = run(sample(1), dos=False)
+    session = Session(rom(reference.printout, reference.reals, reference.A))
     record = session.run_scene(sample(1))
-    assert record["printout"] == expected.printout
+    assert record["printout"] == reference.printout
     assert captured.memory_contents(record["reals"], record["A"]) == captured.memory_contents(
-        expected.reals, expected.A
+        reference.reals, reference.A
     )
 
 
@@ -40,10 +40,10 @@ class TestImage:
 
     @pytest.mark.parametrize("number", [1, 2, 3])
     def test_it_prints_the_published_runs(self, session: Session, number: int) -> None:
-        record, expected = session.run_scene(sample(number)), run(sample(number), dos=False)
-        assert record["printout"] == expected.printout
+        record, reference = session.run_scene(sample(number)), run(sample(number), dos=False)
+        assert record["printout"] == reference.printout
         assert captured.memory_contents(record["reals"], record["A"]) == captured.memory_contents(
-            expected.reals, expected.A
+            reference.reals, reference.A
         )
 
     def test_it_computes_the_captured_calls(self, session: Session) -> None:

@@ -1,10 +1,10 @@
 """impact88 compare theirs.csv                      where another program disagrees, and why
-impact88 compare theirs.jsonl --set MU=.5        a value that the table lacks
+impact88 compare theirs.csv --set MU=.5          a value that the table lacks
 impact88 compare theirs.csv --units us           in mph, lb and ft
 impact88 compare --kit 1988.1 theirs.csv --junit results.xml
 impact88 compare theirs.csv --json -o comparison.json
 
-The table (.csv, .jsonl; - is standard input, CSV) has the columns of a scene and the results of the
+The table (CSV; - is standard input) has the columns of a scene and the results of the
 other program, by the listing's names. A result agrees if it lies within what rounding allows in its
 row. Where results disagree, edits of the reference are tried; the one that reproduces them is the
 likely mistake. With --kit the table holds answers to the vectors of `impact88 oracle --kit`.

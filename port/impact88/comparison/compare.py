@@ -34,7 +34,7 @@ def compare(
     Parameters
     ----------
     table : path, mapping of columns, data frame or sequence of mappings
-        The scenes and the results, by `impact88.names`; a file ends in ``.csv`` or ``.jsonl``.
+        The scenes and the results, by `impact88.names`; a file ends in ``.csv``.
         Texts are judged by the digits that they are written with.
     kit : str, optional
         The id of the kit of test vectors that the table answers, 1988.1. The scenes are the kit's,

@@ -217,7 +217,7 @@ def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
 
 def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candidate | None:
     """Return the likeliest program that gives the rows, and those kept out of the search."""
-    causes = (_confirmed(stage, sample, held_out) for stage in _stages(sample, part))
+    causes = (_confirm(stage, sample, held_out) for stage in _stages(sample, part))
     return next((cause for cause in causes if cause is not None), None)
 
 
@@ -241,7 +241,7 @@ def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
         yield [*pairs, *_conditional(pairs[:10], sample)]
 
 
-def _confirmed(
+def _confirm(
     candidates: Sequence[Candidate], sample: Sample, held_out: Sample
 ) -> Candidate | None:
     """Return the likeliest candidate that gives the rows kept out of the search, too."""

@@ -1,11 +1,10 @@
-"""Other programs' tables: CSV, JSON Lines, and what Python programs have in memory.
+"""Other programs' tables: CSV, and what Python programs have in memory.
 
 Cells stay as they are written, because their digits count.
 """
 
 import csv
 import io
-import json
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -30,7 +29,7 @@ def read_table(table: Any) -> Columns:
     Parameters
     ----------
     table : path, mapping of columns, data frame or sequence of mappings
-        A file ending in ``.csv`` or ``.jsonl``, "-" (CSV on standard input), or the table itself.
+        A CSV file, "-" (CSV on standard input), or the table itself.
 
     Returns
     -------
@@ -43,13 +42,13 @@ def read_table(table: Any) -> Columns:
         For a table that cannot be read.
     """
     if isinstance(table, str | os.PathLike):
-        columns = _read_file(os.fspath(table))
+        columns = _read_csv(os.fspath(table))
     elif isinstance(table, Mapping):
         columns = {str(name): np.atleast_1d(np.asarray(c)) for name, c in table.items()}
     elif hasattr(table, "columns"):
         columns = {str(name): np.asarray(table[name]) for name in table.columns}
     elif isinstance(table, Sequence):
-        columns = _columns_of(list(table), "table")
+        columns = _columns_of(table)
     else:
         raise UserError(f"{quoted(table)} is no table; expected a path, columns or rows")
     size = max((len(column) for column in columns.values()), default=0)
@@ -63,23 +62,10 @@ def read_table(table: Any) -> Columns:
     return columns
 
 
-def _read_file(path: str) -> Columns:
-    ending = os.path.splitext(path)[1].lower()
+def _read_csv(path: str) -> Columns:
+    if not (path == "-" or path.lower().endswith(".csv")):
+        raise UserError("is not a table; expected a name ending in .csv", path)
     text = read_text(path).removeprefix("\ufeff")
-    if ending == ".csv" or path == "-":
-        return _read_csv(text, path)
-    if ending not in (".jsonl", ".ndjson"):
-        raise UserError("is not a table; expected a name ending in .csv or .jsonl", path)
-    rows = []
-    for line, row in enumerate(text.splitlines(), 1):
-        try:
-            rows += [json.loads(row, parse_float=str, parse_int=str)] if row.strip() else []
-        except (ValueError, RecursionError) as error:
-            raise UserError(f"is not JSON: {error}", f"{path}, line {line}") from None
-    return _columns_of(rows, path)
-
-
-def _read_csv(text: str, path: str) -> Columns:
     try:
         header, *rows = [row for row in csv.reader(io.StringIO(text)) if row] or [[]]
     except csv.Error as error:
@@ -95,11 +81,11 @@ def _read_csv(text: str, path: str) -> Columns:
     return {name: np.array([row[k] for row in rows]) for k, name in enumerate(names)}
 
 
-def _columns_of(rows: list[Any], where: str) -> Columns:
+def _columns_of(rows: Sequence[Any]) -> Columns:
     """Return the columns of rows that are mappings; a missing cell is empty."""
     for place, row in enumerate(rows, 1):
         if not isinstance(row, Mapping):
-            raise UserError("is no object of names and numbers", f"{where}, row {place}")
+            raise UserError(f"row {place} of the table is no mapping of names to numbers")
     names = list(dict.fromkeys(name for row in rows for name in row))
     cells = {name: [row.get(name, "") for row in rows] for name in names}
     return {name: np.array(["" if x is None else str(x) for x in c]) for name, c in cells.items()}
