@@ -241,9 +241,7 @@ def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
         yield [*pairs, *_conditional(pairs[:10], sample)]
 
 
-def _confirm(
-    candidates: Sequence[Candidate], sample: Sample, held_out: Sample
-) -> Candidate | None:
+def _confirm(candidates: Sequence[Candidate], sample: Sample, held_out: Sample) -> Candidate | None:
     """Return the likeliest candidate that gives the rows kept out of the search, too."""
     usable = [c for c in candidates if is_complete(c.rows, sample)]
     best = max((score(c.rows, sample) for c in usable), default=0)
