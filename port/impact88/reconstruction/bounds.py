@@ -28,7 +28,6 @@ from .problem import OWN_AXES, unwrap_angles, with_arms
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
-RANKED_DRAWS = 20_000  # used for rank correlations: standard error 0.007
 SWEEP_POINTS = 21  # of each input alone: the top of a parabola is missed by 0.3 % at most
 MAX_DRAWS = 10_000_000  # 80 MB for each output
 BOUNDED = (*RESULTS, *SPEEDS, *COURSES, *FORCES, "DVAF", "DVAR", "DVBF", "DVBR", "EL", "DT")
@@ -201,21 +200,15 @@ def bounds(
     draws = table(inputs_drawn)
     if not np.isfinite(draws).any(0).all() or not np.isfinite(ends).all():
         raise UserError("no scene within these limits has a finite result; expected others")
-    drivers = _drivers(box, table, inputs_drawn[:RANKED_DRAWS], draws[:RANKED_DRAWS])
-    quantiles = np.nanquantile(draws, QUANTILES, axis=0)
-    nominal = table(box.nominal)[0]
+    drivers = _drivers(box, table, inputs_drawn, draws)
+    quantiles = np.nanquantile(draws, QUANTILES, axis=0).T.tolist()
+    nominal = table(box.nominal)[0].tolist()
     results = {}
     for k, name in enumerate(names):
         at_lower, at_upper = (dict(zip(box.varied, p.tolist(), strict=True)) for p in points[:, k])
-        results[name] = Bound(
-            nominal=float(nominal[k]),
-            lower=float(ends[0, k]),
-            upper=float(ends[1, k]),
-            at_lower=at_lower,
-            at_upper=at_upper,
-            quantiles=dict(zip(QUANTILES, quantiles[:, k].tolist(), strict=True)),
-            drivers=drivers[k],
-        )
+        lower, upper = ends[:, k].tolist()
+        levels = dict(zip(QUANTILES, quantiles[k], strict=True))
+        results[name] = Bound(nominal[k], lower, upper, at_lower, at_upper, levels, drivers[k])
     columns = dict(zip(names, draws.T, strict=True))
     return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns)
 
@@ -231,9 +224,10 @@ def _drivers(
         results = table(sweep)
         effects.append(np.nanmax(results, 0) - np.nanmin(results, 0))
     drivers = []
+    input_ranks = np.argsort(np.argsort(inputs.T))
     for column, ranges in zip(draws.T, np.transpose(effects).tolist(), strict=True):
-        ranks = [rank_correlation(values, column) for values in inputs.T]
-        pairs = zip(box.varied, zip(ranks, ranges, strict=True), strict=True)
+        correlations = rank_correlations(input_ranks, column).tolist()
+        pairs = zip(box.varied, zip(correlations, ranges, strict=True), strict=True)
         drivers.append(dict(sorted(pairs, key=lambda pair: -pair[1][1])))
     return drivers
 
@@ -246,10 +240,12 @@ def _warnings(box: _Box, inputs: Array) -> dict[str, float]:
     return {name: fraction for name, fraction in fractions.items() if fraction}
 
 
-def rank_correlation(x: Array, y: Array) -> float:
-    """Return Spearman's rank correlation of finite pairs, 0 where one does not vary."""
-    usable = np.isfinite(y)
-    if usable.sum() < 3 or np.ptp(y[usable]) == 0:
-        return 0.0
-    first, second = (np.argsort(np.argsort(column[usable])) for column in (x, y))
-    return float(np.corrcoef(first, second)[0, 1])
+def rank_correlations(ranks: Array, output: Array) -> Array:
+    """Return Spearman's rank correlation of each input (a row of ranks) with the finite values of
+    an output; 0 for an output that does not vary."""
+    usable = np.isfinite(output)
+    if np.ptp(output[usable]) == 0:
+        return np.zeros(len(ranks))
+    output_ranks = np.argsort(np.argsort(output[usable]))
+    correlations: Array = np.corrcoef(ranks[:, usable], output_ranks)[-1, :-1]
+    return correlations
