@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..cases.amounts import Amount
 from ..cases.motion import contact_point, line_of_motion
@@ -240,7 +241,7 @@ def _warnings(box: _Box, inputs: Array) -> dict[str, float]:
     return {name: fraction for name, fraction in fractions.items() if fraction}
 
 
-def rank_correlations(ranks: Array, output: Array) -> Array:
+def rank_correlations(ranks: NDArray[np.int_], output: Array) -> Array:
     """Return Spearman's rank correlation of each input (a row of ranks) with the finite values of
     an output; 0 for an output that does not vary."""
     usable = np.isfinite(output)
