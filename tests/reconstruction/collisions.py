@@ -43,11 +43,11 @@ def random_impact(rng):
     """Return the vehicles and all velocities and coefficients of an impact within physics."""
     while True:
         vehicles = _vehicles(rng)
-        known = {**vehicles, **_motion(rng, vehicles)}
-        critical = float(evaluate(complete({**known, "MUP": 0.0}).values, ("MUC",))[0]["MUC"])
+        entries = {**vehicles, **_motion(rng, vehicles)}
+        critical = float(evaluate(complete({**entries, "MUP": 0.0}).values, ("MUC",))[0]["MUC"])
         if not abs(critical) < 5:
             continue
-        impact = complete({**known, "MUP": critical * rng.uniform(0.1, 1.0)}).values
+        impact = complete({**entries, "MUP": critical * rng.uniform(0.1, 1.0)}).values
         if min(float(row) for rows in margins(impact).values() for row in rows) > 1e-3:
             return vehicles, {name: float(impact[name]) for name in UNKNOWNS}
 

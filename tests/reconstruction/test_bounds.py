@@ -34,13 +34,13 @@ def test_no_value_of_a_grid_lies_outside(seed):
     }
     limits = {n: SAMPLE[n] + widths[n] * np.array([-rng.random(), rng.random()]) for n in names}
     values = {**SAMPLE, **{n: f"{low} .. {high}" for n, (low, high) in limits.items()}}
-    found = bounds(values, OUTPUTS, samples=100)
+    answer = bounds(values, OUTPUTS, samples=100)
     grids = np.meshgrid(*(np.linspace(*limits[n], 13) for n in names))
-    expected = solve({**SAMPLE, **dict(zip(names, map(np.ravel, grids), strict=True))}, OUTPUTS)
-    for name, bound in found.outputs.items():
+    reference = solve({**SAMPLE, **dict(zip(names, map(np.ravel, grids), strict=True))}, OUTPUTS)
+    for name, bound in answer.outputs.items():
         width = bound.upper - bound.lower
-        assert bound.lower <= expected[name].min() + 1e-6 * width
-        assert bound.upper >= expected[name].max() - 1e-6 * width
+        assert bound.lower <= reference[name].min() + 1e-6 * width
+        assert bound.upper >= reference[name].max() - 1e-6 * width
         at = solve({**SAMPLE, **bound.at_upper}, (name,))[name]
         assert float(at) == pytest.approx(bound.upper)
 
@@ -56,13 +56,13 @@ def test_corners_are_reached_exactly():
 
 
 def test_quantiles_drivers_and_warnings():
-    found = bounds({**SAMPLE, "GA": "-30 +- 5", "MU": "0.7 .. 0.9"}, ["DVA", "LOSS"])
-    dva = found.outputs["DVA"]
+    answer = bounds({**SAMPLE, "GA": "-30 +- 5", "MU": "0.7 .. 0.9"}, ["DVA", "LOSS"])
+    dva = answer.outputs["DVA"]
     assert (round(dva.lower, 3), round(dva.upper, 3)) == (10.947, 18.203)
     assert dva.quantiles[0.5] == pytest.approx(14.56, abs=0.02)
     assert list(dva.drivers) == ["GA", "MU"]
     assert dva.drivers["GA"] == pytest.approx((0.88, 4.712), abs=0.01)
-    assert found.warnings["FRICTION_ABOVE_CRITICAL"] == pytest.approx(0.122, abs=0.005)
+    assert answer.warnings["FRICTION_ABOVE_CRITICAL"] == pytest.approx(0.122, abs=0.005)
 
 
 def test_correlations_narrow_the_draws_but_not_the_bounds():
@@ -76,9 +76,9 @@ def test_correlations_narrow_the_draws_but_not_the_bounds():
 
 
 def test_moving_the_contact_point_and_a_share_of_the_critical_friction():
-    found = bounds({**SAMPLE, "CX": "0 +- 1", "MU": "70 .. 90 %"}, "VAX DVA").outputs
-    assert (round(found["VAX"].lower, 3), round(found["VAX"].upper, 3)) == (-16.299, -14.149)
-    assert (round(found["DVA"].lower, 3), round(found["DVA"].upper, 3)) == (12.766, 15.143)
+    answer = bounds({**SAMPLE, "CX": "0 +- 1", "MU": "70 .. 90 %"}, "VAX DVA").outputs
+    assert (round(answer["VAX"].lower, 3), round(answer["VAX"].upper, 3)) == (-16.299, -14.149)
+    assert (round(answer["DVA"].lower, 3), round(answer["DVA"].upper, 3)) == (12.766, 15.143)
 
 
 def test_inputs_that_no_wanted_result_uses_need_not_be_given():

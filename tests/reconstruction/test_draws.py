@@ -23,35 +23,35 @@ def _forward_problem(seed, polar):
     """Return known values: two final velocities loosely, one velocity before and all coefficients
     not at all; with the limits of the unknown velocity for rejection."""
     vehicles, truth = random_impact(np.random.default_rng([4, seed]))
-    known = {name: Amount.exactly(x) for name, x in vehicles.items()}
-    known |= {name: Amount.exactly(truth[name]) for name in VELOCITIES}
-    known["VX"] = _within(truth["VX"] - 3, truth["VX"] + 2)
-    del known["UX"], known["UY"]
+    entries = {name: Amount.exactly(x) for name, x in vehicles.items()}
+    entries |= {name: Amount.exactly(truth[name]) for name in VELOCITIES}
+    entries["VX"] = _within(truth["VX"] - 3, truth["VX"] + 2)
+    del entries["UX"], entries["UY"]
     course = np.degrees(np.arctan2(truth["UY"], truth["UX"]))
     if polar:
-        known["HA"] = _within(course - 3, course + 2)
+        entries["HA"] = _within(course - 3, course + 2)
     else:
-        known["UY"] = Amount.exactly(truth["UY"])
-    known["VAX"] = _within(truth["VAX"] - 4, truth["VAX"] + 6)
-    known["WBF"] = _within(truth["WBF"] - 0.3, truth["WBF"] + 0.5)
-    return known
+        entries["UY"] = Amount.exactly(truth["UY"])
+    entries["VAX"] = _within(truth["VAX"] - 4, truth["VAX"] + 6)
+    entries["WBF"] = _within(truth["WBF"] - 0.3, truth["WBF"] + 0.5)
+    return entries
 
 
-def _rejection(known, drawn, count, rng):
+def _rejection(entries, draws, count, rng):
     """Return impacts drawn from the prior and kept where all known values hold."""
-    columns = {n: np.full(count, a.value) for n, a in known.items() if not a.varies}
-    columns["VX"] = rng.uniform(known["VX"].low, known["VX"].high, count)
+    columns = {n: np.full(count, a.value) for n, a in entries.items() if not a.varies}
+    columns["VX"] = rng.uniform(entries["VX"].low, entries["VX"].high, count)
     weight = np.ones(count)
-    if "HA" in known:
-        speed = rng.uniform(0, 1.3 * drawn["SA"].max(), count)
-        course = np.radians(rng.uniform(known["HA"].low, known["HA"].high, count))
+    if "HA" in entries:
+        speed = rng.uniform(0, 1.3 * draws["SA"].max(), count)
+        course = np.radians(rng.uniform(entries["HA"].low, entries["HA"].high, count))
         columns |= {"UX": speed * np.cos(course), "UY": speed * np.sin(course)}
         weight = speed / speed.max()  # flat over velocities, not over speeds
     else:
-        low, high = drawn["UX"].min(), drawn["UX"].max()
+        low, high = draws["UX"].min(), draws["UX"].max()
         columns["UX"] = rng.uniform(low - (high - low) / 3, high + (high - low) / 3, count)
     columns |= {"E": rng.uniform(0, 1, count), "EM": rng.uniform(-1, 0, count)}
-    low, high = drawn["MUP"].min(), drawn["MUP"].max()
+    low, high = draws["MUP"].min(), draws["MUP"].max()
     friction = rng.uniform(low - (high - low) / 3, high + (high - low) / 3, count)
     sliding = evaluate(columns, ("gt",))[0]["gt"]
     results = solve({**columns, "MU": np.where(sliding > 0, -friction, friction)})
@@ -64,32 +64,32 @@ def _rejection(known, drawn, count, rng):
         & (rng.random(count) < weight)
     )
     for name in ("VAX", "WBF"):
-        keep &= (results[name] >= known[name].low) & (results[name] <= known[name].high)
-    found = {**columns, **results, "MUP": friction}
-    return {name: np.broadcast_to(x, count)[keep] for name, x in found.items()}
+        keep &= (results[name] >= entries[name].low) & (results[name] <= entries[name].high)
+    answer = {**columns, **results, "MUP": friction}
+    return {name: np.broadcast_to(x, count)[keep] for name, x in answer.items()}
 
 
 @pytest.mark.parametrize("polar", [False, True])
 def test_draws_are_those_of_rejection(polar):
-    known = _forward_problem(int(polar), polar)
-    drawn = sample(Problem(known))
-    kept = _rejection(known, drawn, 400_000, np.random.default_rng(1))
-    assert len(kept["UX"]) > 1500
+    entries = _forward_problem(int(polar), polar)
+    draws = sample(Problem(entries))
+    survivors = _rejection(entries, draws, 400_000, np.random.default_rng(1))
+    assert len(survivors["UX"]) > 1500
     for name in ("UX", "VX", "VAX", "WBF", "E", "EM", "MUP", "DVA", "DVB", "LOSS"):
-        expected = np.quantile(kept[name], LEVELS)
-        off = np.abs(np.quantile(drawn[name], LEVELS) - expected) / kept[name].std()
+        reference = np.quantile(survivors[name], LEVELS)
+        off = np.abs(np.quantile(draws[name], LEVELS) - reference) / survivors[name].std()
         assert off.max() < 0.15, (name, off)
 
 
 @pytest.mark.parametrize(
-    "known", [pytest.param(REAR_END | {"SA": "5.5 +- .5", "E": "normal .2 .05"}, id="rear end"),
+    "entries", [pytest.param(REAR_END | {"SA": "5.5 +- .5", "E": "normal .2 .05"}, id="rear end"),
               pytest.param(SECTION_VII, id="section VII", marks=pytest.mark.long)]
 )  # fmt: skip
-def test_draws_are_those_of_emcee(known):
+def test_draws_are_those_of_emcee(entries):
     emcee = pytest.importorskip("emcee")
-    amounts = {name: read(name, str(value)) for name, value in known.items()}
+    amounts = {name: read(name, str(value)) for name, value in entries.items()}
     problem = Problem(amounts)
-    drawn, target = sample(problem), Target(problem)
+    draws, target = sample(problem), Target(problem)
     d = len(target.names)
 
     def log_density(points):
@@ -100,11 +100,11 @@ def test_draws_are_those_of_emcee(known):
     moves = [(emcee.moves.DEMove(), 0.7), (emcee.moves.StretchMove(), 0.3)]
     sampler = emcee.EnsembleSampler(walkers, d, log_density, vectorize=True, moves=moves)
     sampler.random_state = np.random.RandomState(1).get_state()
-    sampler.run_mcmc(drawn.points[:walkers], 600 if d < 4 else 4000)
+    sampler.run_mcmc(draws.points[:walkers], 600 if d < 4 else 4000)
     chain = sampler.get_chain(discard=100, flat=True)
     for k in range(d):
-        expected = np.quantile(chain[:, k], LEVELS)
-        off = np.abs(np.quantile(drawn.points[:, k], LEVELS) - expected) / chain[:, k].std()
+        reference = np.quantile(chain[:, k], LEVELS)
+        off = np.abs(np.quantile(draws.points[:, k], LEVELS) - reference) / chain[:, k].std()
         assert off.max() < 0.15, (target.names[k], off)
 
 
@@ -113,8 +113,8 @@ def test_a_larger_tolerance_of_what_is_asked_changes_the_prior_only_where_it_is_
     assert -43.9 < np.quantile(low["UX"], 0.05) < -43.4
     assert -36.9 < np.quantile(low["UX"], 0.95) < -36.5
     assert low.families > 20
-    again = sample(Problem({n: read(n, str(v)) for n, v in SECTION_VII.items()}), count=4000)
-    np.testing.assert_array_equal(low.points, again.points)
+    repeat = sample(Problem({n: read(n, str(v)) for n, v in SECTION_VII.items()}), count=4000)
+    np.testing.assert_array_equal(low.points, repeat.points)
 
 
 def test_intervals_bounds_and_assumed_ranges():
@@ -134,8 +134,8 @@ def test_intervals_bounds_and_assumed_ranges():
 
 
 def test_no_impact_within_all_limits():
-    known = {"M": 4, "MA": 1, "MB": 1, "HA": 0, "SA": "10 +- 1", "SB": 0, "E": "0 .. 0.1"}
-    result = reconstruct({**known, "SBF": "8 +- .1", "HBF": 0})[0]
+    entries = {"M": 4, "MA": 1, "MB": 1, "HA": 0, "SA": "10 +- 1", "SB": 0, "E": "0 .. 0.1"}
+    result = reconstruct({**entries, "SBF": "8 +- .1", "HBF": 0})[0]
     assert result.verdict == "contradictory"
     assert not result.draws
 
@@ -154,13 +154,15 @@ def test_densities(amount):
     values = from_normal(amount, rng.standard_normal(200_000))
     ends = np.quantile(values, np.linspace(0.02, 0.98, 40))
     middle = (ends[1:] + ends[:-1]) / 2
-    measured = 0.96 / 39 / np.diff(ends)
+    measurements = 0.96 / 39 / np.diff(ends)
     density = np.exp(log_density(amount, middle))
-    np.testing.assert_allclose(measured / measured.mean(), density / density.mean(), rtol=0.1)
+    np.testing.assert_allclose(
+        measurements / measurements.mean(), density / density.mean(), rtol=0.1
+    )
 
 
 def test_correlated_values():
     amounts = {"MA": Amount(2.0, 1.0, 3.0, "uniform"), "IA": Amount(2.0, 1.0, 3.0, "uniform")}
-    drawn = draw_correlated(amounts, 50_000, np.random.default_rng(0), {("MA", "IA"): 0.8})
-    expected = 6 / np.pi * np.arcsin(0.4)  # rank correlation of a Gaussian copula
-    assert np.corrcoef(drawn.T)[0, 1] == pytest.approx(expected, abs=0.01)
+    draws = draw_correlated(amounts, 50_000, np.random.default_rng(0), {("MA", "IA"): 0.8})
+    reference = 6 / np.pi * np.arcsin(0.4)  # rank correlation of a Gaussian copula
+    assert np.corrcoef(draws.T)[0, 1] == pytest.approx(reference, abs=0.01)

@@ -31,26 +31,26 @@ def _within(value, tolerance):
 
 
 @pytest.fixture(scope="module")
-def measured():
+def measurements():
     """A collision of which all velocities are measured well, with everything that follows."""
     vehicles, truth = random_impact(np.random.default_rng(12))
-    everything, _ = evaluate(complete({**vehicles, **truth}).values, tuple(KINDS))
-    known = {name: Amount.exactly(x) for name, x in vehicles.items()}
-    known |= {name: _within(truth[name], 0.02 if name[0] == "W" else 0.2) for name in MOTION}
-    return known, {name: float(x) for name, x in everything.items()}
+    consequences, _ = evaluate(complete({**vehicles, **truth}).values, tuple(KINDS))
+    entries = {name: Amount.exactly(x) for name, x in vehicles.items()}
+    entries |= {name: _within(truth[name], 0.02 if name[0] == "W" else 0.2) for name in MOTION}
+    return entries, {name: float(x) for name, x in consequences.items()}
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("times", [0.9, 5, 50])
-def test_a_value_at_odds_is_named_with_its_amount(measured, kind, times):
-    known, truth = measured
+def test_a_value_at_odds_is_named_with_its_amount(measurements, kind, times):
+    entries, truth = measurements
     if kind in ("SAF", "HAF"):
-        known = {n: x for n, x in known.items() if n not in ("VAX", "VAY")}
-        known |= {"SAF": _within(truth["SAF"], 0.2), "HAF": _within(truth["HAF"], 0.3)}
+        entries = {n: x for n, x in entries.items() if n not in ("VAX", "VAY")}
+        entries |= {"SAF": _within(truth["SAF"], 0.2), "HAF": _within(truth["HAF"], 0.3)}
     tolerance = KINDS[kind]
     shift = min(times * tolerance, 150.0) if kind in ("HAF", "PDOFA") else times * tolerance
-    known = {**known, kind: _within(truth[kind] + shift, tolerance)}
-    result = reconstruct(known, samples=0)[0]
+    entries = {**entries, kind: _within(truth[kind] + shift, tolerance)}
+    result = reconstruct(entries, samples=0)[0]
     if times < 1:
         assert result.verdict in ("agrees", "at a limit")
         return
@@ -62,9 +62,9 @@ def test_a_value_at_odds_is_named_with_its_amount(measured, kind, times):
 
 
 def test_the_law_that_misses_is_named_with_its_amount():
-    known = {"M": 4, "MA": 3000 / 32.174, "MB": 2000 / 32.174, "UX": 40, "UY": 0, "VX": 0}
-    known |= {"VY": -30, "VAX": 20, "VAY": -10, "VBX": 10, "VBY": -15}
-    result = reconstruct(known)[0]
+    entries = {"M": 4, "MA": 3000 / 32.174, "MB": 2000 / 32.174, "UX": 40, "UY": 0, "VX": 0}
+    entries |= {"VY": -30, "VAX": 20, "VAY": -10, "VBX": 10, "VBY": -15}
+    result = reconstruct(entries)[0]
     assert result.verdict == "contradictory"
     assert result.law.law == "momentum along x"
     assert result.law.amount == pytest.approx((3000 * 20 - 2000 * 10) / 32.174)
@@ -78,15 +78,15 @@ def test_the_law_that_misses_is_named_with_its_amount():
 
 def test_values_that_agree_but_for_the_rounding_of_what_was_typed():
     vehicles, truth = random_impact(np.random.default_rng(3))
-    typed = {name: float(f"{truth[name]:.5g}") for name in MOTION}
-    result = reconstruct({**vehicles, **typed})[0]
+    rounded_values = {name: float(f"{truth[name]:.5g}") for name in MOTION}
+    result = reconstruct({**vehicles, **rounded_values})[0]
     assert result.verdict == "agrees"
     assert result.values["E"] == pytest.approx(truth["E"], abs=0.01)
 
 
 def test_energy_that_is_gained_is_impossible():
-    known = {"M": 4, "MA": 3000, "MB": 2000, "HA": 0, "HB": 0, "SAF": 30, "HAF": 0, "SBF": 45}
-    result = reconstruct({**known, "HBF": 0, "SB": 30})[0]
+    entries = {"M": 4, "MA": 3000, "MB": 2000, "HA": 0, "HB": 0, "SAF": 30, "HAF": 0, "SBF": 45}
+    result = reconstruct({**entries, "HBF": 0, "SB": 30})[0]
     assert result.verdict == "impossible"
     assert result.is_adverse
     assert {"energy", "E"} <= set(result.broken)
@@ -95,8 +95,8 @@ def test_energy_that_is_gained_is_impossible():
 
 
 def test_a_vehicle_that_drives_backwards_is_named():
-    known = {"M": 4, "MA": 1000, "MB": 1000, "HA": 0, "SB": 0, "E": 0, "MU": -10}
-    result = reconstruct({**known, "VBX": -10})[0]
+    entries = {"M": 4, "MA": 1000, "MB": 1000, "HA": 0, "SB": 0, "E": 0, "MU": -10}
+    result = reconstruct({**entries, "VBX": -10})[0]
     assert any(
         line.startswith("A drives backwards along its known course HA") for line in remarks(result)
     )
@@ -124,20 +124,20 @@ def test_stopping_rule():
     assert expected_unseen(3, 5) == np.inf
 
 
-def _staged(number, sd=3.0):
+def _staged_case(number, sd=3.0):
     """Return a staged collision with Table 2's weights: 25 ft² on the squares of spins."""
     collision = next(c for c in collisions() if c.number == number)
-    known = {name: Amount.exactly(x) for name, x in collision.scene.items()}
+    entries = {name: Amount.exactly(x) for name, x in collision.scene.items()}
     for name, x in collision.measured.items():
         if np.isfinite(x):
-            known[name] = Amount(x, -np.inf, np.inf, "normal", sd / 5 if name[0] == "W" else sd)
-    return collision, known
+            entries[name] = Amount(x, -np.inf, np.inf, "normal", sd / 5 if name[0] == "W" else sd)
+    return collision, entries
 
 
 @pytest.mark.parametrize("number", [1, 5, 8, 9, 11])
 def test_staged_collisions_have_the_friction_of_table_2(number):
-    collision, known = _staged(number)
-    result = reconstruct(known, samples=0)[0]
+    collision, entries = _staged_case(number)
+    result = reconstruct(entries, samples=0)[0]
     assert result.verdict in ("agrees", "at a limit")
     assert -1e-6 <= result.values["E"] <= 1
     assert -1 - 1e-6 <= result.values["EM"] <= 1e-6
@@ -148,8 +148,8 @@ def test_staged_collisions_have_the_friction_of_table_2(number):
 def test_nearest_impact_within_physics_is_that_of_another_method(number):
     from scipy.optimize import minimize
 
-    _, known = _staged(number)
-    problem = Problem(known)
+    _, entries = _staged_case(number)
+    problem = Problem(entries)
     search = Search(problem)
     start = search.run()[0][0].point / search.sizes
 
@@ -167,16 +167,16 @@ def test_nearest_impact_within_physics_is_that_of_another_method(number):
         for k in range(6)
     ]
     best = min(end.fun for end in ends if within(end.x).min() > -1e-7)
-    found = Search(problem, limited=True).run(0, [search.run()[0][0].point])[0]
-    assert min(f.squares for f in found if f.misfit < 1e-5) == pytest.approx(best, rel=2e-3)
+    answer = Search(problem, limited=True).run(0, [search.run()[0][0].point])[0]
+    assert min(f.squares for f in answer if f.misfit < 1e-5) == pytest.approx(best, rel=2e-3)
 
 
 def test_what_is_open_and_what_would_help():
     result = reconstruct(SECTION_VII, samples=0)[0]
     assert {"WA", "WB", "WAF", "WBF", "E", "EM"} <= set(result.undetermined)
     assert result.advice == ("WAF", "WBF", "WA")
-    more = {**SECTION_VII, "WAF": -2.9, "WBF": -0.9, "WA": 0}
-    assert not reconstruct(more, samples=0)[0].undetermined
+    complete_entries = {**SECTION_VII, "WAF": -2.9, "WBF": -0.9, "WA": 0}
+    assert not reconstruct(complete_entries, samples=0)[0].undetermined
     assert list(result.drivers["UX"]) == ["VBX", "VAX"]
     assert result.drivers["UX"]["VBX"] == pytest.approx(145**2 / (145**2 + 96**2))
     assert result.correlations["DVB", "DVA"] == pytest.approx(1.0)

@@ -21,8 +21,8 @@ def _turn(angle):
 def test_public_collisions(item):
     case = Case.loads(item["scene"])
     best = reconstruct(case.entries, samples=0)[0]
-    for name, published in item["published"].items():
-        off = case.view.shown(name, best.values[name]) - published
+    for name, reported in item["published"].items():
+        off = case.view.shown(name, best.values[name]) - reported
         assert abs(_turn(off) if name[0] == "H" else off) <= item["tolerance"][name]
     for name, degrees in item["force_comes_from_clockwise_of_the_way_it_travels"].items():
         assert abs(_turn(best.values[name] - degrees)) < 0.1

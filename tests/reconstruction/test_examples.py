@@ -22,5 +22,5 @@ MODULES = (
 @pytest.mark.parametrize("name", MODULES)
 def test_examples(name):
     module = importlib.import_module(f"impact88.{name}")
-    failed, tried = doctest.testmod(module, extraglobs={"impact88": impact88})
-    assert (failed, tried > 0) == (0, True)
+    failures, attempts = doctest.testmod(module, extraglobs={"impact88": impact88})
+    assert (failures, attempts > 0) == (0, True)

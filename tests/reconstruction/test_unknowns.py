@@ -29,8 +29,8 @@ def table():
 )
 def test_unknowns_are_found_over_arrays(table, unknown):
     vehicles, truth = table
-    known = {name: x for name, x in truth.items() if name not in unknown}
-    (solution,) = solve_for({**vehicles, **known})
+    entries = {name: x for name, x in truth.items() if name not in unknown}
+    (solution,) = solve_for({**vehicles, **entries})
     for name in unknown:
         np.testing.assert_allclose(solution[name], truth[name], rtol=1e-6, atol=1e-6)
     assert solution.mismatch.max() < 1e-8 * np.abs(truth["UX"]).max()
@@ -38,28 +38,28 @@ def test_unknowns_are_found_over_arrays(table, unknown):
 
 def test_what_is_not_determined_is_nan(table):
     vehicles, truth = table
-    known = {name: truth[name] for name in ("UY", "VX", "VAX", "VAY", "VBX", "VBY")}
-    (solution,) = solve_for({**vehicles, **known}, ["UX", "VY", "WA", "E", "MUP"])
+    entries = {name: truth[name] for name in ("UY", "VX", "VAX", "VAY", "VBX", "VBY")}
+    (solution,) = solve_for({**vehicles, **entries}, ["UX", "VY", "WA", "E", "MUP"])
     np.testing.assert_allclose(solution["UX"], truth["UX"], rtol=1e-9)
     np.testing.assert_allclose(solution["MUP"], truth["MUP"], rtol=1e-6)
     assert np.isnan(solution["WA"]).all()
     assert np.isnan(solution["E"]).all()
     with pytest.raises(UserError, match="WA do not follow"):
-        solve_for({**vehicles, **known}, ["WA"])
+        solve_for({**vehicles, **entries}, ["WA"])
 
 
 def test_mismatch_of_redundant_velocities(table):
     vehicles, truth = table
-    known = {name: truth[name] for name in (*VELOCITIES, *FINAL_STATE)}
-    known["VAX"] = known["VAX"] + 3.0
-    (solution,) = solve_for({**vehicles, **known}, ["E"])
+    entries = {name: truth[name] for name in (*VELOCITIES, *FINAL_STATE)}
+    entries["VAX"] = entries["VAX"] + 3.0
+    (solution,) = solve_for({**vehicles, **entries}, ["E"])
     assert (solution.mismatch > 0.3).all()
 
 
 def test_both_signs_of_mu(table):
     vehicles, truth = table
-    known = {name: truth[name] for name in (*FINAL_STATE, "E", "EM")}
-    solutions = solve_for({**vehicles, **known, "MU": np.abs(truth["MUP"])})
+    entries = {name: truth[name] for name in (*FINAL_STATE, "E", "EM")}
+    solutions = solve_for({**vehicles, **entries, "MU": np.abs(truth["MUP"])})
     off = np.min([np.abs(s["UX"] - truth["UX"]) for s in solutions], axis=0)
     assert off.max() < 1e-5
     for solution in solutions:
@@ -67,13 +67,13 @@ def test_both_signs_of_mu(table):
 
 
 def test_point_masses_and_what_is_missing():
-    known = {"M": 4, "MA": 3, "MB": 2, "GA": 0, "VAX": 1, "VBX": 2, "UY": 0, "VY": 0, "UX": -3}
-    (solution,) = solve_for(known)
+    entries = {"M": 4, "MA": 3, "MB": 2, "GA": 0, "VAX": 1, "VBX": 2, "UY": 0, "VY": 0, "UX": -3}
+    (solution,) = solve_for(entries)
     assert solution["VX"] == pytest.approx(8.0)
     with pytest.raises(UserError, match="missing MB"):
         impact88.solve_for({"MA": 3})
     with pytest.raises(UserError, match="UZ"):
-        impact88.solve_for({**known, "UZ": 3})
+        impact88.solve_for({**entries, "UZ": 3})
 
 
 def test_no_inverse_at_e_0():

@@ -71,11 +71,28 @@ def test_units_of_the_view():
     assert "DVA 11 km/h given, " in check(result, "DVA", case.view)
 
 
+def test_messages_name_the_entries_behind_a_value():
+    crush = {"M": 4, "MA": 95, "MB": 110, "HA": 0, "SB": 0, "E": 0, "EBSA": "14 +- 2"}
+    result = reconstruct({**crush, "EBSB": "normal 12 2", "SAF": "12 +- 3", "HAF": 0}, samples=0)[0]
+    assert check(result, "EL").startswith("EL (EBSA, EBSB) 17,")
+    assert "know EL (EBSA, EBSB) more closely" in advice(result)[0]
+    share = {n: x for n, x in SECTION_VII.items() if n != "UY"} | {"UY": 0, "WA": 0, "WB": 0}
+    result = reconstruct({**share, "E": 0.1, "EM": -0.5, "MU": "60 .. 90 %"}, samples=0)[0]
+    assert check(result, "MU").startswith("MU/MUC 0.75 given, ")
+
+
+def test_a_heading_follows_an_unknown_course():
+    result = reconstruct(Case.of({**SECTION_VII, "TA": "course", "TB": "course"}).entries)[0]
+    assert result.verdict == "agrees"
+    assert result.values["TA"] % 360 == pytest.approx((result.values["HA"] + 180) % 360)
+    assert result.values["SA"] == pytest.approx(40.2083, abs=1e-3)
+
+
 def test_a_scene_for_the_1988_program():
-    known = {**SECTION_VII, "VAX": -10, "VAY": 20, "VBX": -20, "VBY": 45, "WAF": -2.9, "WBF": -1}
+    entries = {**SECTION_VII, "VAX": -10, "VAY": 20, "VBX": -20, "VBY": 45, "WAF": -2.9, "WBF": -1}
     with pytest.raises(UserError, match="leaves"):
         reconstruct(SECTION_VII, samples=0)[0].scene()
-    scene = reconstruct({**known, "WA": 0}, samples=0)[0].scene()
+    scene = reconstruct({**entries, "WA": 0}, samples=0)[0].scene()
     assert scene["UX"] == pytest.approx(-40.2083, abs=1e-3)
     assert scene["MU"] == pytest.approx(0.662, abs=1e-3)
     assert scene["M"] == 6
@@ -91,8 +108,8 @@ def test_forces_over_a_contact_time():
 
 
 def test_a_plane_on_the_other_side_is_turned():
-    known = {**SECTION_VII, "GA": 180}
-    result = reconstruct(known, samples=0)[0]
+    entries = {**SECTION_VII, "GA": 180}
+    result = reconstruct(entries, samples=0)[0]
     assert result.values["MUP"] == pytest.approx(0.662, abs=1e-3)
     assert "GA = 180 has each vehicle on the other's side" in result.remarks[0]
 
@@ -105,12 +122,12 @@ def test_friction_as_a_percentage_of_what_ends_the_sliding():
 
 
 def test_momentum_of_bodies_whose_dimensions_are_not_given():
-    known = {n: x for n, x in SECTION_VII.items() if n[0] not in "IDP" or n == "DT"}
-    result = reconstruct(known, samples=0)[0]
+    entries = {n: x for n, x in SECTION_VII.items() if n[0] not in "IDP" or n == "DT"}
+    result = reconstruct(entries, samples=0)[0]
     assert result.values["UX"] == pytest.approx(-40.2083, abs=1e-3)
     assert "E" not in result.values
     with pytest.raises(UserError, match="E cannot be used"):
-        reconstruct({**known, "E": 0.2})
+        reconstruct({**entries, "E": 0.2})
 
 
 @pytest.mark.parametrize(

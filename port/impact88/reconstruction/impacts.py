@@ -22,7 +22,8 @@ from ..names import PIVOT as PIVOT
 
 Array = NDArray[np.float64]
 
-BEFORE, AFTER = VELOCITIES, FINAL_STATE
+BEFORE = VELOCITIES
+AFTER = FINAL_STATE
 VEHICLES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA")
 SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
