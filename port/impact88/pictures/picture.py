@@ -22,15 +22,12 @@ Image = NDArray[np.float32]
 MAX_PIXELS = 60_000_000  # of a page in its file: A3 at 500 dots an inch has 48 million
 MAX_SIDE = 4000  # pixels of a page as it is read: 20 for each of 200 columns
 MIN_SIDE = 100  # pixels of the shorter side: 13 lines of type have more
+SHADOW = 0.3  # brightness of the darkest shadow on paper, relative to the lightest paper
+PAPER = 80  # percentile of the darkness that is still paper: type covers a tenth of a page
 BLOCK = 4  # pixels a side that are averaged to find the paper
 TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
-PAPER = 80  # percentile of the darkness that is still paper: type covers a tenth of a page
 MAX_TALL = 0.08  # height of connected ink of type, as a fraction of the page: lines may touch
 MAX_WIDE = 0.3  # its width: bad copies join the letters of a word
-GRAIN = 0.08  # darkness that is never ink
-SURROUND = 0.8  # brightness of what surrounds a page, relative to the page, at most
-MIN_STEP = 0.08  # logarithm of brightness across the edge of a page; the hardest shadow has 0.04
-MIN_PAGE = 0.15  # fraction of the picture that a page with a surround takes, at least
 
 
 class Page(NamedTuple):
@@ -166,71 +163,25 @@ def ink_of(grey: Image) -> Image:
     Notes
     -----
     The paper is the picture closed over dark parts (the black-hat transform). Full ink is the mean
-    darkness above the threshold between grain and ink (Otsu 1979).
+    darkness, weighted with its cube: grain of the paper has no weight then.
     """
     small = resize(grey, 1 / BLOCK)
-    size = max(5, round(max(small.shape) / TYPE_SIZE))
-    if _is_negative(small, size):
+    size = max(3, max(small.shape) // TYPE_SIZE)
+    # type is a small part of a page: it draws the distribution to its own side of the paper
+    if np.mean((small - ndimage.uniform_filter(small, size)) ** 3) > 0:
         grey, small = 255 - grey, 255 - small
     paper = ndimage.grey_closing(small, (size, size), mode="nearest")
-    is_page = _page_mask(paper)
-    paper = ndimage.gaussian_filter(paper, size / 3, mode="nearest")
-    paper = np.where(is_page, paper, np.inf).astype(np.float32)
-    rows = np.minimum(np.arange(grey.shape[0]) // BLOCK, paper.shape[0] - 1)
-    columns = np.minimum(np.arange(grey.shape[1]) // BLOCK, paper.shape[1] - 1)
-    around = paper[rows[:, None], columns]
-    ink = np.clip(1 - grey / np.maximum(around, 1), 0, 1)
-    ink[np.isinf(around)] = 0
+    paper = ndimage.grey_erosion(paper, (3, 3), mode="nearest")  # no ink along the edge of a page
+    rows, columns = grey.shape
+    around = np.asarray(
+        PIL.Image.fromarray(paper).resize((columns, rows), PIL.Image.Resampling.BILINEAR)
+    )
+    ink = np.maximum(1 - grey / np.maximum(around, SHADOW * paper.max()), 0)
+    ink[around < SHADOW * paper.max()] = 0
     # the paper was closed over its own grain, and is found too light
-    ink = np.maximum(ink - np.percentile(ink[::4, ::4], PAPER), 0)
-    sample = ink[::3, ::3]
-    sample = sample[sample > GRAIN]
-    if sample.size < 50:
-        return np.asarray(ink, np.float32)
-    full = float(sample[sample >= _threshold(sample)].mean())
-    return np.asarray(np.clip(ink / max(full, 0.1), 0, 1.5), np.float32)
-
-
-def _is_negative(small: Image, size: int) -> bool:
-    """Return True for a picture whose strokes are lighter than what surrounds them."""
-    if np.median(small) > 110:
-        return False
-    around = ndimage.uniform_filter(small, size)
-    light = (small - around > 25) & (around < 110)
-    dark = (around - small > 25) & (around >= 110)
-    return bool(light.sum() > 2 * dark.sum())
-
-
-def _page_mask(paper: Image) -> NDArray[np.bool_]:
-    """Return where the page is, on paper that lies on something darker; all True without that.
-
-    The edge of a page is a step of brightness; that of a shadow is not.
-    """
-    whole = np.ones(paper.shape, bool)
-    labels, _ = ndimage.label(paper > SURROUND * np.percentile(paper, 90))
-    sizes = np.bincount(labels.ravel())
-    sizes[0] = 0
-    page = ndimage.binary_fill_holes(labels == sizes.argmax())
-    border = np.r_[page[0], page[-1], page[:, 0], page[:, -1]]
-    if border.mean() > 0.5 or page.mean() < MIN_PAGE:
-        return whole
-    inner, outer = ndimage.binary_erosion(page), ndimage.binary_dilation(page)
-    light = np.log(np.maximum(paper, 1))
-    steps = ndimage.maximum_filter(light, 3) - ndimage.minimum_filter(light, 3)
-    if np.median(steps[outer & ~inner]) < MIN_STEP:
-        return whole
-    margin = max(2, max(paper.shape) // 150)
-    return np.asarray(ndimage.binary_erosion(page, iterations=margin))
-
-
-def _threshold(values: Image) -> float:
-    """Return the level with the largest variance between what is below and above."""
-    counts, edges = np.histogram(values, 64)
-    below = np.cumsum(counts)
-    total = np.cumsum(counts * (edges[:-1] + edges[1:]) / 2)
-    with np.errstate(all="ignore"):
-        between = (total / below - total[-1] / below[-1]) ** 2 * below / (below[-1] - below)
-    return float(edges[int(np.argmax(np.nan_to_num(between[:-1]))) + 1])
+    ink = np.maximum(ink - np.percentile(ink, PAPER), 0)
+    full = float(np.sum(ink**4) / max(np.sum(ink**3), 1e-9))
+    return np.asarray(np.clip(ink / max(full, 1e-9), 0, 1.5), np.float32)
 
 
 class Points(NamedTuple):

@@ -111,8 +111,6 @@ class Cell(NamedTuple):
         if self.margin < HOLDS and self.distance < MAX_FOREIGN:
             return "holds"
         is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
-        if not self.name:
-            is_known &= self.members >= MIN_MEMBERS
         is_far = self.margin > DIFFERS and self.distance > MIN_DISTANCE
         return "differs" if is_far and is_known else "doubt"
 
@@ -472,9 +470,9 @@ class Reader:
         is_numeric = np.array([kind in IN_NUMBERS + BLANK for kind in kinds])
         margins[in_number[:, None] & ~is_numeric] = -np.inf
         margins[np.arange(len(asked)), own] = -np.inf
-        best = margins.argmax(axis=1)
-        nearest = margins.max(axis=1)
-        nearest[on_blank & ~self.inked[asked]] = -1.0
+        largest = margins.max(axis=1)
+        largest[on_blank & ~self.inked[asked]] = -1.0
+        best = np.where(np.isinf(margins), np.inf, to).argmin(axis=1)
         far = np.where(on_blank, 0.0, to_own / energy[own] / usual)
         return [
             Cell(
@@ -482,7 +480,7 @@ class Reader:
                 predicted=str(want[i]),
                 name=str(self.fields[at]),
                 other=kinds[best[i]],
-                margin=float(nearest[i]),
+                margin=float(largest[i]),
                 distance=float(far[i]),
                 members=int(counts[own[i]]),
                 other_members=int(counts[best[i]]),
@@ -493,13 +491,30 @@ class Reader:
     def final_text(self, cells: Sequence[Cell]) -> str:
         """Return the text by the measured cells, with `UNREAD` where they leave a doubt."""
         final = np.where(self.is_clear | (self.names == BLANK), self.names, UNREAD)
+        unread = unread_cells(cells)
+        altered = altered_numbers(cells)
         for cell in cells:
             at = cell.line * self.shape[1] + cell.cell
-            if cell.state == "doubt" and cell.name and cell.predicted != BLANK:
+            if cell in unread and cell.predicted != BLANK:
                 final[at] = UNREAD
             else:  # a label that is not clearly another is what it must be
-                final[at] = cell.other if cell.state == "differs" else cell.predicted
+                is_other = cell.state == "differs" or (cell.name in altered and cell.margin > 0)
+                final[at] = cell.other if is_other else cell.predicted
         return self.text(final)
+
+
+def altered_numbers(cells: Sequence[Cell]) -> set[str]:
+    """Return the names of numbers with a cell that differs."""
+    return {cell.name for cell in cells if cell.name and cell.state == "differs"}
+
+
+def unread_cells(cells: Sequence[Cell]) -> list[Cell]:
+    """Return the cells of numbers in doubt, but for numbers of which another cell differs: those
+    are read as they look."""
+    altered = altered_numbers(cells)
+    return [
+        cell for cell in cells if cell.name and cell.state == "doubt" and cell.name not in altered
+    ]
 
 
 def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:

@@ -16,7 +16,7 @@ from .cells import BLANK
 from .grid import STEEP, grids_of, is_on_side, skew_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
 from .residue import marks_of
-from .transcript import Cell, Transcript, transcribe
+from .transcript import Cell, Transcript, transcribe, unread_cells
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
 MAX_DROPPED = 2  # cells of numbers without their ink on a page that differs
@@ -237,7 +237,7 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
     doubts = [cell for cell in cells if cell.state == "doubt"]
     differing = [cell for cell in cells if cell.state == "differs"]
-    in_doubt = [cell for cell in doubts if cell.name]
+    in_doubt = unread_cells(cells)
     adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
     if not cells or not any(_is_same_page(result, sheet, adverse) for sheet in transcript.sheets):
         return Verdict.INCOMPLETE
