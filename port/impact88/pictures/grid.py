@@ -20,7 +20,6 @@ from .picture import Floats, Image, Points, resize
 
 CELL_WIDTH = 16  # pixels of a resampled cell: 3 and 8 of a dot matrix are distinct from there on
 SLACK = 2  # pixels kept around a cell, for the shifts that are tried
-STEEP = 0.08  # slope of lines from which a page is turned before it is read
 MIN_LINES = 6  # lines of type of a page
 MAX_LINES = 90  # two printouts with wide margins have 70
 MIN_HEIGHT = 5.0  # pixels of a line of type
@@ -166,31 +165,12 @@ def _sharpest(
     return max(tilts, key=sharpness)
 
 
-def skew_of(points: Points) -> float:
-    """Return the slope of lines of type that run across a page, -0.25 to 0.25."""
-    some = points.some(20_000)
-    slopes = [(float(slope), 0.0) for slope in np.arange(-0.25, 0.2501, 0.004)]
-    return _sharpest(some, slopes, points.span / 600)[0]
-
-
-def is_on_side(points: Points) -> bool:
-    """Return True for a page whose lines run down it."""
-
-    def contrast(part: Points) -> float:
-        level = part.y - skew_of(part) * part.x
-        counts = np.bincount(((level - level.min()) / (part.span / 150)).astype(int))
-        steps = np.diff(np.minimum(counts, np.percentile(counts, 95)))
-        return float(np.mean(steps.astype(float) ** 2) / np.mean(counts) ** 2)
-
-    some = points.some(20_000)
-    return contrast(Points(some.y, -some.x, some.span)) > contrast(some)
-
-
 def _tilt(points: Points) -> tuple[float, float]:
-    """Return slope and keystone of the lines, found on finer and finer lattices."""
+    """Return slope and keystone of the lines, found on finer and finer lattices; slopes to 0.25."""
     step = max(1.0, points.span / 1200)
     some = points.some(20_000)
-    first = skew_of(points)
+    slopes = [(float(slope), 0.0) for slope in np.arange(-0.25, 0.2501, 0.004)]
+    first = _sharpest(some, slopes, points.span / 600)[0]
     keystones = np.arange(-0.12, 0.1201, 0.02).tolist()
     slope, key = _sharpest(
         some, [(first + d, k) for k in keystones for d in (-0.002, 0.0, 0.002)], 1.5 * step
@@ -259,7 +239,7 @@ def _grid(ink: Image, points: Points, tilt: tuple[float, float]) -> Grid | None:
     pitch = _pitch(xs, height, span)
     if not pitch:
         return None
-    bend, clarity = _fit_bend(_phasors(xs, ys, pitch, span), pitch, span)
+    bend, clarity = _fit_bend(_phasors(xs, ys, pitch, span), tilt[0], pitch, span)
     across = x + bend @ _terms(x, y, span)
     inked = across[np.concatenate(members)]
     origin = float((np.floor(inked.min() / pitch) - 1) * pitch)
@@ -365,13 +345,15 @@ def _phasors(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> _
     return _Phasors(np.array(sums), _terms(at[:, 0], at[:, 1], span))
 
 
-def _fit_bend(phasors: _Phasors, pitch: float, span: float) -> tuple[Floats, float]:
+def _fit_bend(
+    phasors: _Phasors, slope: float, pitch: float, span: float
+) -> tuple[Floats, float]:
     """Return the bend that brings the edges of cells to whole pitches, and the clarity then.
 
     The bend b maximizes the clarity |Σ z exp(2πi b · terms / pitch)| / Σ |z| over the phasors z.
     It has many local maxima, one a pitch or so: a search on a lattice precedes the refinement.
     """
-    bend = _search_bend(phasors, pitch, span)
+    bend = _search_bend(phasors, slope, pitch, span)
     weights = np.abs(phasors.sums)
     for reach in REACHES:  # reweighted least squares on the phase of each piece
         moved = phasors.shift(bend, pitch)
@@ -384,7 +366,7 @@ def _fit_bend(phasors: _Phasors, pitch: float, span: float) -> tuple[Floats, flo
     return bend, float(np.abs(total) / weights.sum())
 
 
-def _search_bend(phasors: _Phasors, pitch: float, span: float) -> Floats:
+def _search_bend(phasors: _Phasors, slope: float, pitch: float, span: float) -> Floats:
     """Return the clearest bend on a lattice of slant, stretch, keystone and bow.
 
     They are searched together: with one of them wrong by some pitches, no value of the others gives
@@ -396,6 +378,7 @@ def _search_bend(phasors: _Phasors, pitch: float, span: float) -> Floats:
         np.arange(-reach * span, reach * span, width)
         for reach, width in ((0.1, step), (0.04, step), (0.15, 2 * step), (0.06, 4 * step))
     )
+    slants += slope * span  # columns are perpendicular to lines, nearly
     curves = np.array([*product(keystones, bows - bows.mean())])
     chosen = np.argsort(-np.abs(phasors.sums))[:80]
     sums, terms = phasors.sums[chosen], phasors.terms[:, chosen]

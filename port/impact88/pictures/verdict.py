@@ -7,22 +7,18 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy import ndimage
 
 from ..errors import UserError
 from ..printouts import VERDICTS, Verdict, Verification, judge
 from ..printouts.page import REPLIES
 from .cells import BLANK
-from .grid import STEEP, grids_of, is_on_side, skew_of
+from .grid import grids_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
 from .residue import marks_of
 from .transcript import Cell, Transcript, transcribe, unread_cells
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
 MAX_DROPPED = 2  # cells of numbers without their ink on a page that differs
-MIN_ROW_GAIN = (
-    0.8  # gain of the program's rows for a cell, of a page that is upright: upside down 0.4
-)
 PROMPT = re.compile(r"(?m)^( *ENTER.*?:.*?\?).*$")
 
 
@@ -126,10 +122,10 @@ def verify_page(
 ) -> Iterator[PictureVerification]:
     """Yield the verification of each printout on a page."""
     layer = judge(page.text) if page.text.strip() else []
-    for transcript, turned in _transcripts(page, scene):
+    for transcript, quarters in _transcripts(page, scene):
         marks = marks_of(transcript.grid, transcript.filled())
         for verification in _judge_transcript(transcript, marks, scene):
-            result = _locate_findings(page, transcript, turned, verification, marks)
+            result = _locate_findings(page, transcript, quarters, verification, marks)
             yield _compare_layer(result, layer.pop(0)) if layer else result
 
 
@@ -149,52 +145,36 @@ def _compare_layer(result: PictureVerification, layer: Verification) -> PictureV
     return replace(result, verification=verification, remarks=(*result.remarks, remark))
 
 
-@dataclass(frozen=True)
-class _Turn:
-    """How a page was set upright: quarter turns to the left, then the slope of its lines."""
+def _as_it_lies(points: Floats, quarters: int, size: tuple[int, int]) -> Floats:
+    """Return where points of a page are before it was turned by quarters to the left.
 
-    quarters: int
-    slope: float
-    size: tuple[int, int]  # height and width as it lies
-
-    def apply(self, ink: Image) -> Image:
-        """Return a page set upright."""
-        turned = np.ascontiguousarray(np.rot90(ink, self.quarters))
-        if not self.slope:
-            return turned
-        angle = float(np.degrees(np.arctan(self.slope)))
-        return np.asarray(ndimage.rotate(turned, angle, reshape=False, order=1), np.float32)
-
-    def back(self, points: Floats) -> Floats:
-        """Return where points of the upright page are on the page as it lies."""
-        height, width = self.size if self.quarters % 2 == 0 else self.size[::-1]
-        x, y = points[:, 0] - width / 2, points[:, 1] - height / 2
-        angle = np.arctan(self.slope)
-        x, y = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
-        x, y = ((x, y), (-y, x), (-x, -y), (y, -x))[self.quarters]
-        return np.stack([x + self.size[1] / 2, y + self.size[0] / 2], axis=1)
+    Parameters
+    ----------
+    points : ndarray, shape (points, 2)
+        x and y on the turned page.
+    quarters : int
+        Quarter turns.
+    size : tuple of int
+        Height and width of the page as it lies.
+    """
+    x, y = points.T
+    height, width = size
+    turned = ((x, y), (width - y, x), (width - x, height - y), (y, height - x))[quarters]
+    return np.stack(turned, axis=1)
 
 
-def _transcripts(page: Page, scene: Mapping[str, str] | None) -> list[tuple[Transcript, _Turn]]:
-    """Return the transcripts of a page in the quarter turn in which the program's rows fit."""
+def _transcripts(page: Page, scene: Mapping[str, str] | None) -> list[tuple[Transcript, int]]:
+    """Return the transcripts of a page, and the quarter turn in which the program's rows fit."""
     ink = ink_of(page.grey)
-    points = points_of(ink)
-    if len(points.x) < 500:
-        return []
-    best: list[tuple[Transcript, _Turn]] = []
-    first = 1 if is_on_side(points) else 0
-    for quarters in (first, first + 2):
-        turn = _Turn(quarters, 0.0, (ink.shape[0], ink.shape[1]))
-        upright = turn.apply(ink)
-        slope = skew_of(points_of(upright))
-        if abs(slope) > STEEP:
-            turn = replace(turn, slope=slope)
-            upright = turn.apply(ink)
-        read = [(transcribe(g, scene), turn) for g in grids_of(upright, points_of(upright))]
+    best: list[tuple[Transcript, int]] = []
+    for quarters in range(4):
+        upright = np.ascontiguousarray(np.rot90(ink, quarters))
+        grids = grids_of(upright, points_of(upright))
+        read = [(transcribe(grid, scene), quarters) for grid in grids]
         gain = max((transcript.gain for transcript, _ in read), default=0.0)
         if gain > max((transcript.gain for transcript, _ in best), default=0.0):
             best = read
-        if gain > MIN_ROW_GAIN:
+        if any(transcript.sheets for transcript, _ in read):
             break
     return best
 
@@ -286,15 +266,16 @@ def _remarks(
 def _locate_findings(
     page: Page,
     transcript: Transcript,
-    turn: _Turn,
+    quarters: int,
     verification: Verification,
     marks: Sequence[Floats],
 ) -> PictureVerification:
     """Return a verification with the places of its findings in the file's picture."""
     grid = transcript.grid
+    size = page.grey.shape[0], page.grey.shape[1]
 
     def corners(line: int, cell: int, stop: int) -> Floats:
-        return page.scale * turn.back(grid.corners(line, cell, stop))
+        return page.scale * _as_it_lies(grid.corners(line, cell, stop), quarters, size)
 
     boxes = []
     for finding in verification.findings:
@@ -311,7 +292,7 @@ def _locate_findings(
         verification,
         tuple(boxes),
         tuple(doubts),
-        tuple(page.scale * turn.back(mark) for mark in marks),
+        tuple(page.scale * _as_it_lies(mark, quarters, size) for mark in marks),
         tuple(_remarks(transcript, verification, marks)),
         page.grey,
         page.scale,
