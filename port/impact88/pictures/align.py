@@ -20,10 +20,9 @@ NUMBER = "#"  # a number's cells in a row
 REPLY = "&"  # those of a reply: numbers with commas between
 OPTIONAL = "_"  # a blank that may be absent, which has no index in its row
 BESIDE = ""  # what is beside a row on its line
-FOREIGN_COST = 2.2  # of an inked cell beside a row: half that of one other character in the row
+IRREGULAR_COST = 2.2  # of an inked cell beside a row, a missing blank, a row out of order
 UNLIKE_COST = 8.0  # of complete unlikeness
 NUMBER_COST = 0.3  # of a cell of a number, which may be any of its characters
-SKIP_COST = 1.0  # of a blank that is missing
 
 
 class Alignment(NamedTuple):
@@ -69,7 +68,7 @@ def costs_of(odds: Floats, unlike: Floats, numeric: str = NUMERIC) -> dict[str, 
         for k, character in enumerate(CHARACTERS)
     }
     costs[BLANK] = costs[OPTIONAL] = is_blank
-    costs[BESIDE] = np.minimum(is_blank, FOREIGN_COST)
+    costs[BESIDE] = np.minimum(is_blank, IRREGULAR_COST)
     costs[NUMBER] = NUMBER_COST + np.min([costs[c] for c in numeric + "E+"], axis=0)
     costs[REPLY] = np.minimum(costs[NUMBER], np.minimum(NUMBER_COST + costs[","], is_blank))
     return costs
@@ -129,7 +128,7 @@ def align(costs: dict[str, Floats], rows: Sequence[str]) -> Alignment:
 
 
 def _skip_cost(state: str) -> float:
-    return SKIP_COST if state == BLANK else 0.0
+    return IRREGULAR_COST if state == BLANK else 0.0
 
 
 def _shifted(total: Floats, by: int) -> Floats:

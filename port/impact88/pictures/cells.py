@@ -20,8 +20,7 @@ from .picture import Floats, Image
 
 Vectors = NDArray[np.float32]
 BLANK = " "
-DIGITS = "0123456789"
-NUMERIC = DIGITS + ".-"
+NUMERIC = "0123456789.-"
 CHARACTERS = NUMERIC + "ABCDEFGHIKLMNOPRSTUVWXYabxy=()%*:,?+"
 """Characters of the printed page of which `known_glyphs` has pictures."""
 CAPITALS = (4, 20)  # rows of a known glyph between which capitals are
@@ -29,9 +28,8 @@ SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]
 STRENGTHS = (0.4, 1.3)  # smallest and largest strength of a cell's ink: ribbons run dry
 INKED = 0.25  # darkness from which a cell is inked: of blank cells 1 in 1,000 is darker than 0.27
 STYLES = 3  # known typefaces that a page may mix: its own lies between those
-MAX_SPREAD = 1.6  # mean distance in a group of equal digits, relative to that of equal letters
+MAX_SPREAD = 1.7  # mean distance in a group of equal digits, relative to that of equal letters
 REPEAT_PENALTY = 0.1  # on a second group of cells with the same name, per cell
-WIDEST_SAMPLE = 0.75  # quantile of the distances of equal letters
 
 
 class Cells(NamedTuple):

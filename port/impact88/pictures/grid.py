@@ -7,7 +7,7 @@ bent.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import NamedTuple
@@ -21,17 +21,13 @@ from .picture import Floats, Image, Points, resize
 CELL_WIDTH = 16  # pixels of a resampled cell: 3 and 8 of a dot matrix are distinct from there on
 SLACK = 2  # pixels kept around a cell, for the shifts that are tried
 MIN_LINES = 6  # lines of type of a page
-MAX_LINES = 90  # two printouts with wide margins have 70
-MIN_HEIGHT = 5.0  # pixels of a line of type
-PITCHES = (0.4, 1.15)  # smallest and largest pitch, in heights of a line; pages have 0.6 to 0.97
+WIDEST = 1.1  # widest pitch, in heights of a line; pages have 0.6 to 0.97
 MAX_COLUMNS = 200  # pitches across a page: two printouts side by side have 180
-MIN_GUTTER = 6  # gap between printouts side by side, 300ths of the page: three characters
 STRAIN = 0.02  # penalty on keystone and bow, in clarity per pitch: broken type would be bent to fit
+REACH = 0.3  # distance from a whole pitch at which the phase of a piece loses its weight, pitches
+RIDGE = 1e-4  # weight that keeps the bend small
 CELL_HEIGHT = 1.7  # height of a cell, in heights of a line
-STRETCH = 6 * CELL_WIDTH  # length of the piece of a line whose height is measured at once
-PIECE = 12  # length of the piece of a line whose gaps are summed to one phasor, pitches
-REACHES = (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2)  # of each refinement of the bend, pitches
-RIDGE = np.array([1e-6, 1e-4, 1e-4, 3e-4, 3e-4, 1e-2])  # weights that keep the bend smooth
+PIECE = 12  # length of the piece of a line whose gaps and height are measured at once, cells
 
 
 @dataclass(frozen=True)
@@ -99,8 +95,8 @@ class Grid:
         for _ in range(5):  # the bend is a function of x and y
             x = u - np.tensordot(self.bend, _terms(x, y, span), 1)
             y = v + x * (slope + keystone * y / span)
-        t = (u - self.origin) * self.scale / STRETCH
-        y = y + np.tensordot(self.rise, _bows(t, v * self.scale / STRETCH), 1)
+        t = (u - self.origin) / self.pitch / PIECE
+        y = y + np.tensordot(self.rise, _bows(t, v / self.pitch / PIECE), 1)
         return x + self.size[1] / 2, y + self.size[0] / 2
 
     def strip(self, line: int) -> Image:
@@ -128,23 +124,6 @@ class Grid:
     def move_lines(self, own: Floats) -> Grid:
         """Return the grid with lines moved by what is added to their own shifts."""
         return replace(self, own=self.own + own)
-
-
-def grids_of(ink: Image, points: Points) -> Iterator[Grid]:
-    """Yield the grids of an upright page: one, or one for each column of printouts.
-
-    Parameters
-    ----------
-    ink : ndarray of float32, shape (rows, columns)
-        The ink of the page.
-    points : Points
-        Its inked places.
-    """
-    tilt = _tilt(points)
-    for part in _columns(points, tilt[0]):
-        grid = _grid(ink, part, tilt)
-        if grid is not None:
-            yield grid
 
 
 def _sharpest(
@@ -183,23 +162,6 @@ def _tilt(points: Points) -> tuple[float, float]:
     return slope, key
 
 
-def _columns(points: Points, slope: float) -> list[Points]:
-    """Return the ink on either side of a gap that runs down the page, or all in one.
-
-    Each side has at least a quarter of the ink.
-    """
-    across = points.x + slope * points.y
-    step = points.span / 300
-    counts = np.bincount(((across - across.min()) / step).astype(int)).astype(float)
-    cumulative = np.cumsum(counts) / len(across)
-    runs = [run for run in _runs(counts < 0.05 * counts.mean()) if 0.25 < cumulative[run[0]] < 0.75]
-    start, stop = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
-    if stop - start < MIN_GUTTER:
-        return [points]
-    is_first = across < across.min() + step * (start + stop) / 2
-    return [points.inside(is_first), points.inside(~is_first)]
-
-
 def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return first index and end of each run of True."""
     edges = np.flatnonzero(np.diff(np.r_[0, mask.astype(int), 0])).reshape(-1, 2)
@@ -225,14 +187,25 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
     return [(low + top, low + foot) for top, foot in _runs(dense > grain + 0.2 * (usual - grain))]
 
 
-def _grid(ink: Image, points: Points, tilt: tuple[float, float]) -> Grid | None:
-    """Return the grid of one column of type, None where no lines or no pitch are found."""
+def grid_of(ink: Image, points: Points) -> Grid | None:
+    """Return the grid of an upright page, None where no lines or no pitch are found.
+
+    Parameters
+    ----------
+    ink : ndarray of float32, shape (rows, columns)
+        The ink of the page.
+    points : Points
+        Its inked places.
+    """
+    if not len(points.x):
+        return None
+    tilt = _tilt(points)
     x, y, span = points
     level = y - x * (tilt[0] + tilt[1] * y / span)
     lines = _lines(points, level)
     height = _usual_height(level, lines)
     lines = [(top, foot) for top, foot in lines if foot - top > 0.3 * height]
-    if not MIN_LINES <= len(lines) <= MAX_LINES or height < MIN_HEIGHT:
+    if len(lines) < MIN_LINES:
         return None
     members = [np.flatnonzero((level >= top) & (level < foot)) for top, foot in lines]
     xs, ys = [x[inked] for inked in members], [y[inked] for inked in members]
@@ -305,8 +278,8 @@ def _pitch(xs: list[Floats], height: float, span: float) -> float:
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
     power = np.sum([np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum() for gap in gaps], axis=0)
-    first, last = (int(2 * height * part) for part in PITCHES)
-    first = max(first, int(2 * span / MAX_COLUMNS), 2)
+    last = int(2 * WIDEST * height)
+    first = max(last // 2, int(2 * span / MAX_COLUMNS), 2)  # an octave, so that it is no harmonic
     chosen = np.arange(size // last, size // first + 1)
     return float(size / chosen[np.argmax(power[chosen])] / 2) if len(chosen) else 0.0
 
@@ -345,9 +318,7 @@ def _phasors(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> _
     return _Phasors(np.array(sums), _terms(at[:, 0], at[:, 1], span))
 
 
-def _fit_bend(
-    phasors: _Phasors, slope: float, pitch: float, span: float
-) -> tuple[Floats, float]:
+def _fit_bend(phasors: _Phasors, slope: float, pitch: float, span: float) -> tuple[Floats, float]:
     """Return the bend that brings the edges of cells to whole pitches, and the clarity then.
 
     The bend b maximizes the clarity |Σ z exp(2πi b · terms / pitch)| / Σ |z| over the phasors z.
@@ -355,11 +326,11 @@ def _fit_bend(
     """
     bend = _search_bend(phasors, slope, pitch, span)
     weights = np.abs(phasors.sums)
-    for reach in REACHES:  # reweighted least squares on the phase of each piece
+    for _ in range(8):  # reweighted least squares on the phase of each piece
         moved = phasors.shift(bend, pitch)
         off = np.angle(moved * np.conj(moved.sum())) / (2 * np.pi) * pitch
-        sure = weights * np.exp(-((off / (reach * pitch)) ** 2))
-        normal = (phasors.terms * sure) @ phasors.terms.T + np.diag(RIDGE) * sure.sum()
+        sure = weights * np.exp(-((off / (REACH * pitch)) ** 2))
+        normal = (phasors.terms * sure) @ phasors.terms.T + RIDGE * sure.sum() * np.eye(len(bend))
         bend = bend - np.linalg.solve(normal, (phasors.terms * sure) @ off)
     total = phasors.shift(bend, pitch).sum()
     bend[0] -= float(np.angle(total)) / (2 * np.pi) * pitch
@@ -420,7 +391,8 @@ def _fit_rise(
     """
     reach = 9  # largest shift tried, resampled pixels
     half = int(0.85 * height * scale) + reach
-    stretches = np.maximum((across * scale / STRETCH).astype(int), 0)
+    width = PIECE * CELL_WIDTH
+    stretches = np.maximum((across * scale / width).astype(int), 0)
     profiles, places = [], []
     for line, middle in enumerate(middles):
         down = np.floor((level - middle) * scale).astype(int) + half
@@ -430,7 +402,7 @@ def _fit_rise(
         counts = ndimage.uniform_filter1d(counts, 3, axis=1)
         for stretch in np.flatnonzero(counts[:, reach:-reach].sum(axis=1) > 40):
             profiles.append(counts[stretch] / np.linalg.norm(counts[stretch]))
-            places.append((line, stretch + 0.5, middle * scale / STRETCH))
+            places.append((line, stretch + 0.5, middle * scale / width))
     if not profiles:
         return np.zeros(4), np.zeros(len(middles))
     rows, at = np.array(profiles), np.array(places)

@@ -21,13 +21,12 @@ Image = NDArray[np.float32]
 
 MAX_PIXELS = 60_000_000  # of a page in its file: A3 at 500 dots an inch has 48 million
 MAX_SIDE = 4000  # pixels of a page as it is read: 20 for each of 200 columns
-MIN_SIDE = 100  # pixels of the shorter side: 13 lines of type have more
 SHADOW = 0.3  # brightness of the darkest shadow on paper, relative to the lightest paper
 PAPER = 80  # percentile of the darkness that is still paper: type covers a tenth of a page
 BLOCK = 4  # pixels a side that are averaged to find the paper
+DARK = 0.4  # ink from which a place is inked
+MAX_SIZE = 0.3  # longer side of connected ink of type, as a fraction of the page's
 TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
-MAX_TALL = 0.08  # height of connected ink of type, as a fraction of the page: lines may touch
-MAX_WIDE = 0.3  # its width: bad copies join the letters of a word
 
 
 class Page(NamedTuple):
@@ -107,12 +106,10 @@ def _picture_pages(data: bytes, name: str, pages: range | None) -> Iterator[Page
 
 
 def _check_size(file: PIL.Image.Image, name: str, number: int) -> None:
-    """Raise UserError for a picture that is larger or smaller than any page."""
-    size = f"page {number}: {file.width} x {file.height} pixels"
+    """Raise UserError for a picture that is larger than any page."""
     if file.width * file.height > MAX_PIXELS:
+        size = f"page {number}: {file.width} x {file.height} pixels"
         raise UserError(f"{size}; expected at most {MAX_PIXELS:,}", name)
-    if min(file.size) < MIN_SIDE:
-        raise UserError(f"{size}; expected at least {MIN_SIDE} a side", name)
 
 
 def _grey(file: PIL.Image.Image) -> Image:
@@ -207,12 +204,12 @@ def points_of(ink: Image) -> Points:
     Connected ink that is too large for type is left out: edges of the paper, bands, ruled lines.
     """
     around = ndimage.uniform_filter(ink, 3)
-    dark = (ink > 0.4) & (around > 0.2)
+    dark = (ink > DARK) & (around > DARK / 2)
     labels, _ = ndimage.label(dark[::2, ::2], np.ones((3, 3)))
     rows, columns = (length / 2 for length in ink.shape)
     for number, box in enumerate(ndimage.find_objects(labels), 1):
         tall, wide = (part.stop - part.start for part in box)
-        if tall > MAX_TALL * rows or wide > MAX_WIDE * columns:
+        if tall > MAX_SIZE * rows or wide > MAX_SIZE * columns:
             part = np.kron(labels[box] == number, np.ones((2, 2), bool))
             top, left = 2 * box[0].start, 2 * box[1].start
             window = dark[top : top + part.shape[0], left : left + part.shape[1]]

@@ -6,11 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .grid import CELL_WIDTH, Grid
-from .picture import Floats
+from .grid import CELL_WIDTH, SLACK, Grid
+from .picture import DARK, Floats
 
-DARK = 0.45  # ink from which a place belongs to a mark
-BORDER = np.array([4, 5])  # pixels of a resampled page by which type may leave its cell
 MIN_AREA = 0.12  # of a mark, in squares of a cell's width: a full stop has as much
 
 
@@ -29,11 +27,12 @@ def marks_of(grid: Grid, filled: NDArray[np.bool_]) -> list[Floats]:
     list of ndarray, shape (4, 2)
         Corners of each mark on the page, pixels, clockwise.
     """
+    border = 2 * SLACK  # type may leave its cell
     is_free = np.ones(grid.ink.shape, bool)
     for line, cell in np.argwhere(filled).tolist():
         corners = grid.corners(line, cell) * grid.scale
-        left, top = np.maximum(corners.min(axis=0) - BORDER, 0).astype(int)
-        right, foot = np.ceil(corners.max(axis=0) + BORDER).astype(int)
+        left, top = np.maximum(corners.min(axis=0) - border, 0).astype(int)
+        right, foot = np.ceil(corners.max(axis=0) + border).astype(int)
         is_free[top:foot, left:right] = False
     dark = (grid.ink > DARK) & is_free
     labels, _ = ndimage.label(ndimage.binary_closing(dark, np.ones((3, 3))))

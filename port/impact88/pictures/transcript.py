@@ -18,12 +18,11 @@ from numpy.typing import NDArray
 
 from ..printouts import Verification, judge
 from ..printouts.page import REPLIES, ROWS, PrintedChar
-from .align import BESIDE, NUMBER, OPTIONAL, REPLY, align, costs_of
+from .align import BESIDE, IRREGULAR_COST, NUMBER, OPTIONAL, REPLY, align, costs_of
 from .cells import (
     BLANK,
     CHARACTERS,
     NUMERIC,
-    WIDEST_SAMPLE,
     Cells,
     Typeface,
     cells_of,
@@ -43,19 +42,13 @@ MIN_DISTANCE = (
 )
 MAX_FOREIGN = 8.0  # distance of a cell from its character's mean, in the page's usual distances
 MIN_MEMBERS = 3  # cells of which a mean is made that a cell is found to be like
-MIN_GAIN = 0.5  # gain of a row for each of its characters from which a line is taken for it
 MIN_DENSITY = 0.7  # gain of a row for each of its inked cells: a line of other text has 0.4
-JOIN_COST = 0.5  # of a line joined to the one before it, in gain
-ORDER_COST = 3.0  # of a row out of the program's order, in gain
-MIN_INKED = 50  # cells with type of a page
 MIN_USUAL = 0.05  # usual distance of cells from their means, as a fraction of the mean's energy
 MAX_OFF = 0.1  # fraction of the cells that contradict a page, from which it is of another scene
 MAX_UNLIKE = 0.45  # distance of type from its mean, as a fraction of the mean's energy
 ROUNDS = 3  # readings by the page's own means
 SCREEN = 40  # columns of an Apple's screen
-MIN_SIZE = 5  # characters that a row is taken to have at least, for `MIN_GAIN`
 UNREAD = "?"
-WILD = re.compile(f"[{NUMBER}{REPLY}{OPTIONAL} ]")
 IN_NUMBERS = NUMERIC + "E+"
 TEMPLATES = [
     re.sub(
@@ -167,10 +160,8 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
         Inputs known from elsewhere, for a page with results only.
     """
     reader = Reader(grid, cells_of(grid))
-    if reader.inked.sum() < MIN_INKED:
-        return Transcript(grid)
     rows = reader.place_rows(TEMPLATES)
-    gain = sum(placed.gain for placed in rows) / int(reader.inked.sum())
+    gain = sum(placed.gain for placed in rows) / max(1, int(reader.inked.sum()))
     if not reader.name_labels(rows):
         return Transcript(grid, gain=gain)
     grid = reader.register_lines()
@@ -184,9 +175,9 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
         sheets = judge(transcript.text, given)
         if [s.page for s in sheets] == [s.page for s in transcript.sheets]:
             break
+        transcript.sheets = sheets
         if not reader.predict(sheets):
             break
-        transcript.sheets = sheets
         reader.read(reader.predicted_names())
         transcript.cells = reader.measure()
         transcript.text = reader.final_text(transcript.cells)
@@ -270,8 +261,7 @@ class Reader:
         last = np.array([max(part) for part in lines])
         for row, (start, stop) in enumerate(ends):
             gains[(first < start) | (last > stop), row] = -np.inf
-        sizes = np.array([max(MIN_SIZE, len(WILD.sub("", text))) for text in texts])
-        gains[gains < MIN_GAIN * sizes] = -np.inf
+        gains[gains < IRREGULAR_COST] = -np.inf
         placements: list[Placement] = []
         for unit, row in _best_units(gains, first, last):
             part = align({name: cost[[unit]] for name, cost in costs.items()}, [texts[row]])
@@ -329,7 +319,7 @@ class Reader:
         letters = self.names[labels]
         is_same = np.triu(letters[:, None] == letters, 1)
         apart = pair_distances(self.cells.at(labels))[is_same]
-        usual = float(np.quantile(apart, WIDEST_SAMPLE)) if len(apart) else 0.0
+        usual = float(np.median(apart)) if len(apart) else 0.0
         sample = self.cells.at(numbers)
         self.names[numbers] = name_groups(sample, self.unlike[numbers, : len(NUMERIC)], usual)
 
@@ -538,19 +528,19 @@ def _best_units(
 ) -> list[tuple[int, int]]:
     """Return the units and their rows with the largest sum of gains, no line in two units.
 
-    A row that does not follow the one before it on the program's page costs `ORDER_COST`,
-    each line that is joined to another `JOIN_COST`.
+    A row that does not follow the one before it on the program's page costs `IRREGULAR_COST`, and
+    so does each line that is joined to another.
     """
     count = gains.shape[1]
     follows = np.arange(count)[:, None] < np.arange(count)  # row before, row
-    step = np.where(follows, 0.0, ORDER_COST)
+    step = np.where(follows, 0.0, IRREGULAR_COST)
     best = [np.zeros(count)]  # by line: the largest sum, by the last row that was placed
     chosen: list[list[list[tuple[int, int]]]] = [[[] for _ in range(count)]]
     for line in range(int(last.max()) + 1):
         totals, paths = best[line].copy(), [*chosen[line]]
         for unit in np.flatnonzero(last == line).tolist():
             before = best[first[unit]][:, None] - step
-            sums = before.max(axis=0) + gains[unit] - JOIN_COST * (line - first[unit])
+            sums = before.max(axis=0) + gains[unit] - IRREGULAR_COST * (line - first[unit])
             for row in np.flatnonzero(sums > totals).tolist():
                 totals[row] = sums[row]
                 paths[row] = [*chosen[first[unit]][int(before[:, row].argmax())], (unit, row)]

@@ -12,13 +12,12 @@ from ..errors import UserError
 from ..printouts import VERDICTS, Verdict, Verification, judge
 from ..printouts.page import REPLIES
 from .cells import BLANK
-from .grid import grids_of
+from .grid import grid_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
 from .residue import marks_of
 from .transcript import Cell, Transcript, transcribe, unread_cells
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
-MAX_DROPPED = 2  # cells of numbers without their ink on a page that differs
 PROMPT = re.compile(r"(?m)^( *ENTER.*?:.*?\?).*$")
 
 
@@ -122,11 +121,14 @@ def verify_page(
 ) -> Iterator[PictureVerification]:
     """Yield the verification of each printout on a page."""
     layer = judge(page.text) if page.text.strip() else []
-    for transcript, quarters in _transcripts(page, scene):
-        marks = marks_of(transcript.grid, transcript.filled())
-        for verification in _judge_transcript(transcript, marks, scene):
-            result = _locate_findings(page, transcript, quarters, verification, marks)
-            yield _compare_layer(result, layer.pop(0)) if layer else result
+    transcribed = _transcribe_page(page, scene)
+    if transcribed is None:
+        return
+    transcript, quarters = transcribed
+    marks = marks_of(transcript.grid, transcript.filled())
+    for verification in _judge_transcript(transcript, marks, scene):
+        result = _locate_findings(page, transcript, quarters, verification, marks)
+        yield _compare_layer(result, layer.pop(0)) if layer else result
 
 
 def _compare_layer(result: PictureVerification, layer: Verification) -> PictureVerification:
@@ -163,18 +165,20 @@ def _as_it_lies(points: Floats, quarters: int, size: tuple[int, int]) -> Floats:
     return np.stack(turned, axis=1)
 
 
-def _transcripts(page: Page, scene: Mapping[str, str] | None) -> list[tuple[Transcript, int]]:
-    """Return the transcripts of a page, and the quarter turn in which the program's rows fit."""
+def _transcribe_page(page: Page, scene: Mapping[str, str] | None) -> tuple[Transcript, int] | None:
+    """Return the transcript of a page, and the quarter turn in which the program's rows fit best;
+    None without lines of type."""
     ink = ink_of(page.grey)
-    best: list[tuple[Transcript, int]] = []
+    best: tuple[Transcript, int] | None = None
     for quarters in range(4):
         upright = np.ascontiguousarray(np.rot90(ink, quarters))
-        grids = grids_of(upright, points_of(upright))
-        read = [(transcribe(grid, scene), quarters) for grid in grids]
-        gain = max((transcript.gain for transcript, _ in read), default=0.0)
-        if gain > max((transcript.gain for transcript, _ in best), default=0.0):
-            best = read
-        if any(transcript.sheets for transcript, _ in read):
+        grid = grid_of(upright, points_of(upright))
+        if grid is None:
+            continue
+        transcript = transcribe(grid, scene)
+        if best is None or transcript.gain > best[0].gain:
+            best = transcript, quarters
+        if transcript.sheets:
             break
     return best
 
@@ -211,7 +215,7 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
     A page differs only if the measured cells are those of the same predicted page, each cell that
-    differs belongs to a finding, and no cell of a number is in doubt, but for some dropped ink.
+    differs belongs to a finding, and no cell of another number is in doubt.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
@@ -224,9 +228,8 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     verdict = result.verdict
     if verdict is Verdict.DIFFERS:
         is_odd = any(cell.name and cell.name not in adverse for cell in differing)
-        is_odd |= any(cell.other != BLANK for cell in in_doubt) or len(in_doubt) > MAX_DROPPED
         is_few = len(differing) <= MAX_DIFFERING or bool(result.explanation)
-        return verdict if is_few and not is_odd else Verdict.INCOMPLETE
+        return verdict if is_few and not is_odd and not in_doubt else Verdict.INCOMPLETE
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
         if in_doubt or any(cell.name for cell in differing):
             return Verdict.INCOMPLETE
