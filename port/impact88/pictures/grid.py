@@ -23,9 +23,7 @@ SLACK = 2  # pixels kept around a cell, for the shifts that are tried
 MIN_LINES = 6  # lines of type of a page
 WIDEST = 1.1  # widest pitch, in heights of a line; pages have 0.6 to 0.97
 MAX_COLUMNS = 200  # pitches across a page: two printouts side by side have 180
-STRAIN = 0.02  # penalty on keystone and bow, in clarity per pitch: broken type would be bent to fit
 REACH = 0.3  # distance from a whole pitch at which the phase of a piece loses its weight, pitches
-RIDGE = 1e-4  # weight that keeps the bend small
 CELL_HEIGHT = 1.7  # height of a cell, in heights of a line
 PIECE = 12  # length of the piece of a line whose gaps and height are measured at once, cells
 
@@ -330,7 +328,7 @@ def _fit_bend(phasors: _Phasors, slope: float, pitch: float, span: float) -> tup
         moved = phasors.shift(bend, pitch)
         off = np.angle(moved * np.conj(moved.sum())) / (2 * np.pi) * pitch
         sure = weights * np.exp(-((off / (REACH * pitch)) ** 2))
-        normal = (phasors.terms * sure) @ phasors.terms.T + RIDGE * sure.sum() * np.eye(len(bend))
+        normal = (phasors.terms * sure) @ phasors.terms.T + 1e-4 * sure.sum() * np.eye(len(bend))
         bend = bend - np.linalg.solve(normal, (phasors.terms * sure) @ off)
     total = phasors.shift(bend, pitch).sum()
     bend[0] -= float(np.angle(total)) / (2 * np.pi) * pitch
@@ -357,13 +355,11 @@ def _search_bend(phasors: _Phasors, slope: float, pitch: float, span: float) -> 
     by_slant = np.exp(turn * np.outer(slants, terms[2])).astype(np.complex64)
     by_stretch = np.exp(turn * np.outer(stretches, terms[1])).T.astype(np.complex64)
     by_curve = (sums * np.exp(turn * curves @ terms[3:5])).astype(np.complex64)
-    penalty = STRAIN * np.abs(curves).sum(axis=1) / pitch
     best, bend = -np.inf, np.zeros(6)
     for start in range(0, len(curves), 64):  # threads cost more than products of small matrices
         rows = by_curve[start : start + 64]
         clarity = np.abs((rows[:, None] * by_slant).reshape(-1, len(chosen)) @ by_stretch)
         clarity = clarity.reshape(len(rows), len(slants), len(stretches)) / np.abs(sums).sum()
-        clarity -= penalty[start : start + 64, None, None]
         curve, slant, stretch = np.unravel_index(int(clarity.argmax()), clarity.shape)
         if clarity[curve, slant, stretch] > best:
             best = float(clarity[curve, slant, stretch])

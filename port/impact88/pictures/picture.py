@@ -23,7 +23,6 @@ MAX_PIXELS = 60_000_000  # of a page in its file: A3 at 500 dots an inch has 48 
 MAX_SIDE = 4000  # pixels of a page as it is read: 20 for each of 200 columns
 SHADOW = 0.3  # brightness of the darkest shadow on paper, relative to the lightest paper
 PAPER = 80  # percentile of the darkness that is still paper: type covers a tenth of a page
-BLOCK = 4  # pixels a side that are averaged to find the paper
 DARK = 0.4  # ink from which a place is inked
 MAX_SIZE = 0.3  # longer side of connected ink of type, as a fraction of the page's
 TYPE_SIZE = 45  # the paper is closed over dark parts narrower than the page divided by this
@@ -162,8 +161,8 @@ def ink_of(grey: Image) -> Image:
     The paper is the picture closed over dark parts (the black-hat transform). Full ink is the mean
     darkness, weighted with its cube: grain of the paper has no weight then.
     """
-    small = resize(grey, 1 / BLOCK)
-    size = max(3, max(small.shape) // TYPE_SIZE)
+    size = 10  # of the closing, pixels of a smaller picture
+    small = resize(grey, min(1.0, size * TYPE_SIZE / max(grey.shape)))
     # type is a small part of a page: it draws the distribution to its own side of the paper
     if np.mean((small - ndimage.uniform_filter(small, size)) ** 3) > 0:
         grey, small = 255 - grey, 255 - small
