@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import struct
 import zlib
 
 import numpy as np
+import PIL.Image
 import pytest
 from typedpages import draw, encode
 
 import impact88
 from impact88.pictures import verify_picture
-from impact88.pictures.picture import MAX_PIXELS, MIN_SIDE, ink_of, read_pages
+from impact88.pictures.picture import ink_of, points_of, read_pages
 
 WHITE = np.full((400, 300), 255.0)
 
@@ -35,9 +37,9 @@ def png_header(width: int, height: int) -> bytes:
         b"\x89PNG\r\n\x1a\n",
         png_header(0, 0),
         png_header(60_000, 60_000),
-        png_header(8_000, MAX_PIXELS // 8_000 + 1),
+        png_header(8_000, 7_501),
         encode(draw("MA= 1"))[:-200],
-        encode(WHITE[: MIN_SIDE - 1]),
+        encode(WHITE[:1, :1]),
         b"%PDF-1.4 damaged",
     ],
     ids="empty start zero huge large truncated small pdf".split(),
@@ -92,3 +94,71 @@ def test_shadow_is_paper_and_a_dark_surround_is_not() -> None:
     assert (ink_of(shadow) > 0.5).sum() > 0.8 * (ink_of(grey) > 0.5).sum()
     framed = np.pad(grey, 60, constant_values=90.0)
     assert (ink_of(framed) > 0.5)[:50].sum() == 0
+
+
+def test_largest_picture_and_its_size_as_read() -> None:
+    with pytest.raises(impact88.UserError, match="expected at most 60,000,000"):
+        [*read_pages(png_header(8_000, 7_501), "page")]
+    with pytest.raises(impact88.UserError, match="not a picture"):
+        [*read_pages(png_header(8_000, 7_500), "page")]
+    (page,) = read_pages(encode(np.zeros((100, 6_000))), "page")
+    assert page.grey.shape[1] == 4_000
+    assert page.scale == 1.5
+
+
+@pytest.mark.parametrize(("frames", "message"), [(200, ""), (201, "has 201 pages")])
+def test_pages_of_a_file(frames: int, message: str) -> None:
+    file = io.BytesIO()
+    frame = PIL.Image.new("1", (9, 9))
+    frame.save(file, "TIFF", save_all=True, append_images=[frame] * (frames - 1))
+    if message:
+        with pytest.raises(impact88.UserError, match=message):
+            next(read_pages(file.getvalue(), "page"))
+    else:
+        assert next(read_pages(file.getvalue(), "page")).number == 1
+
+
+def test_limits_of_a_pdf() -> None:
+    import subprocess
+    import sys
+
+    from impact88.pictures.pdfpages import _read_header
+
+    with subprocess.Popen([sys.executable, "-S", "-c", ""], stdout=subprocess.PIPE) as process:
+        assert _read_header(process, 3)["error"].endswith("within 10 s and 400 MB")
+
+
+def test_dots_of_a_pdf() -> None:
+    (page,) = read_pages(encode(WHITE, "PDF"), "page.pdf")  # 300 x 400 points
+    assert page.grey.shape == (1667, 1250)
+
+
+def test_ink_is_darker_than_the_grain_of_its_paper() -> None:
+    grain = np.random.default_rng(1).normal(200, 5, (400, 400))
+    grain[100:110, 100:110] = 50
+    assert (ink_of(grain.astype(np.float32)) > 0).mean() == pytest.approx(0.2, abs=0.03)
+
+
+@pytest.mark.parametrize(("brightness", "is_inked"), [(0.4, True), (0.2, False)])
+def test_darkest_shadow_on_paper(brightness: float, is_inked: bool) -> None:
+    grey = np.full((900, 900), 250.0, np.float32)
+    grey[:, 450:] *= brightness
+    grey[100:800:60, 50:850] *= 0.3
+    assert (ink_of(grey)[:, 500:800] > 0.5).any() == is_inked
+
+
+@pytest.mark.parametrize(("side", "is_inked"), [(30, True), (56, False)])
+def test_widest_stroke_of_type(side: int, is_inked: bool) -> None:
+    grey = np.full((1800, 1800), 250.0, np.float32)
+    grey[900 : 900 + side, 900 : 900 + side] = 20
+    assert (ink_of(grey)[910:920, 910:920] > 0.5).all() == is_inked
+
+
+@pytest.mark.parametrize(
+    ("ink", "length", "is_inked"),
+    [(0.3, 50, False), (0.6, 50, True), (1.0, 80, True), (1.0, 160, False)],
+)
+def test_inked_places(ink: float, length: int, is_inked: bool) -> None:
+    page = np.zeros((400, 400), np.float32)
+    page[200:206, 100 : 100 + length] = ink
+    assert (len(points_of(page).x) > 0) == is_inked

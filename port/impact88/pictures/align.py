@@ -111,7 +111,9 @@ def align(costs: dict[str, Floats], rows: Sequence[str]) -> Alignment:
     total += cost[:, :, 0]
     moves = np.zeros((cells, count, lines), np.int8)
     for cell in range(1, cells):
-        ways = np.stack([total + stay, _shifted(total, 1) + step, _shifted(total, 2) + skip])
+        ways = np.stack(
+            [total + stay, _shift_states(total, 1) + step, _shift_states(total, 2) + skip]
+        )
         moves[cell] = ways.argmin(axis=0)
         total = ways.min(axis=0) + cost[:, :, cell]
     ends = np.r_[np.flatnonzero(is_first)[1:], count] - 1
@@ -131,5 +133,5 @@ def _skip_cost(state: str) -> float:
     return IRREGULAR_COST if state == BLANK else 0.0
 
 
-def _shifted(total: Floats, by: int) -> Floats:
+def _shift_states(total: Floats, by: int) -> Floats:
     return np.vstack([np.full((by, total.shape[1]), np.inf), total[:-by]])

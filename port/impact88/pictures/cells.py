@@ -215,12 +215,14 @@ def unlikeness(cells: Cells) -> Floats:
     flat = glyphs.reshape(len(glyphs), glyphs.shape[1], -1)
     flat = flat / np.linalg.norm(flat, axis=2, keepdims=True)
     sample = rows[:: max(1, len(rows) // 40)]
-    fits = _apart(sample, flat).min(axis=2).sum(axis=0)
-    least: Floats = _apart(rows, flat[np.argsort(fits)[:STYLES]]).min(axis=1).astype(float)
+    fits = _style_distances(sample, flat).min(axis=2).sum(axis=0)
+    least: Floats = (
+        _style_distances(rows, flat[np.argsort(fits)[:STYLES]]).min(axis=1).astype(float)
+    )
     return least
 
 
-def _apart(rows: Vectors, styles: Vectors) -> Vectors:
+def _style_distances(rows: Vectors, styles: Vectors) -> Vectors:
     """Return 1 - cos φ of each cell, style and glyph at the best shift."""
     tall, width = sum(CAPITALS), CELL_WIDTH
     glyphs = styles.reshape(-1, tall * width).T
@@ -290,9 +292,11 @@ def name_groups(cells: Cells, unlike: Floats, usual: float) -> list[str]:
     groups = fcluster(tree, widest, "distance") - 1
     members = (groups[None] == np.arange(groups.max() + 1)[:, None]).astype(float)
     sizes = members.sum(axis=1, keepdims=True)
+    first = members @ unlike
     repeats = 1 + len(members) // len(NUMERIC)
-    costs = [members @ unlike + repeat * REPEAT_PENALTY * sizes for repeat in range(repeats + 1)]
-    rows, columns = linear_sum_assignment(np.hstack(costs))
+    rows, columns = linear_sum_assignment(
+        np.hstack([first, *[first + REPEAT_PENALTY * sizes] * repeats])
+    )
     names = np.zeros(len(members), int)
     names[rows] = columns % len(NUMERIC)
     return [NUMERIC[k] for k in names[groups]]

@@ -145,7 +145,7 @@ def _sharpest(
 def _tilt(points: Points) -> tuple[float, float]:
     """Return slope and keystone of the lines, found on finer and finer lattices; slopes to 0.25."""
     step = max(1.0, points.span / 1200)
-    some = points.some(20_000)
+    some = points.sample(20_000)
     slopes = [(float(slope), 0.0) for slope in np.arange(-0.25, 0.2501, 0.004)]
     first = _sharpest(some, slopes, points.span / 600)[0]
     keystones = np.arange(-0.12, 0.1201, 0.02).tolist()

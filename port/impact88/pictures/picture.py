@@ -187,7 +187,7 @@ class Points(NamedTuple):
     y: Floats
     span: float
 
-    def some(self, count: int) -> Points:
+    def sample(self, count: int) -> Points:
         """Return about ``count`` of the places."""
         part = slice(None, None, max(1, len(self.x) // count))
         return Points(self.x[part], self.y[part], self.span)

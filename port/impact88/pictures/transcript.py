@@ -499,12 +499,11 @@ def altered_numbers(cells: Sequence[Cell]) -> set[str]:
 
 
 def unread_cells(cells: Sequence[Cell]) -> list[Cell]:
-    """Return the cells of numbers in doubt, but for numbers of which another cell differs: those
-    are read as they look."""
+    """Return the cells of numbers in doubt: those that look blank, where ink may have dropped, and
+    those of numbers of which no cell differs. Others are read as they look."""
     altered = altered_numbers(cells)
-    return [
-        cell for cell in cells if cell.name and cell.state == "doubt" and cell.name not in altered
-    ]
+    doubts = [cell for cell in cells if cell.name and cell.state == "doubt"]
+    return [cell for cell in doubts if cell.other == BLANK or cell.name not in altered]
 
 
 def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
@@ -528,8 +527,7 @@ def _best_units(
 ) -> list[tuple[int, int]]:
     """Return the units and their rows with the largest sum of gains, no line in two units.
 
-    A row that does not follow the one before it on the program's page costs `IRREGULAR_COST`, and
-    so does each line that is joined to another.
+    A row that does not follow the one before it on the program's page costs `IRREGULAR_COST`.
     """
     count = gains.shape[1]
     follows = np.arange(count)[:, None] < np.arange(count)  # row before, row
@@ -540,7 +538,7 @@ def _best_units(
         totals, paths = best[line].copy(), [*chosen[line]]
         for unit in np.flatnonzero(last == line).tolist():
             before = best[first[unit]][:, None] - step
-            sums = before.max(axis=0) + gains[unit] - IRREGULAR_COST * (line - first[unit])
+            sums = before.max(axis=0) + gains[unit]
             for row in np.flatnonzero(sums > totals).tolist():
                 totals[row] = sums[row]
                 paths[row] = [*chosen[first[unit]][int(before[:, row].argmax())], (unit, row)]

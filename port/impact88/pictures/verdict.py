@@ -9,13 +9,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import UserError
-from ..printouts import VERDICTS, Verdict, Verification, judge
+from ..printouts import VERDICTS, Kind, Verdict, Verification, judge
 from ..printouts.page import REPLIES
 from .cells import BLANK
 from .grid import grid_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
 from .residue import marks_of
-from .transcript import Cell, Transcript, transcribe, unread_cells
+from .transcript import Cell, Transcript, altered_numbers, transcribe, unread_cells
 
 MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
 PROMPT = re.compile(r"(?m)^( *ENTER.*?:.*?\?).*$")
@@ -215,7 +215,8 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
     A page differs only if the measured cells are those of the same predicted page, each cell that
-    differs belongs to a finding, and no cell of another number is in doubt.
+    differs belongs to a finding and each number that differs has such a cell, and no cell of
+    another number is in doubt.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
@@ -227,7 +228,9 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
         return Verdict.INCOMPLETE
     verdict = result.verdict
     if verdict is Verdict.DIFFERS:
-        is_odd = any(cell.name and cell.name not in adverse for cell in differing)
+        altered = altered_numbers(cells)
+        is_odd = not altered <= adverse
+        is_odd |= any(f.kind is Kind.NUMBER and f.name not in altered for f in result.findings)
         is_few = len(differing) <= MAX_DIFFERING or bool(result.explanation)
         return verdict if is_few and not is_odd and not in_doubt else Verdict.INCOMPLETE
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
