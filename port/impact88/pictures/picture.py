@@ -192,10 +192,6 @@ class Points(NamedTuple):
         part = slice(None, None, max(1, len(self.x) // count))
         return Points(self.x[part], self.y[part], self.span)
 
-    def inside(self, chosen: NDArray[np.bool_]) -> Points:
-        """Return the chosen places."""
-        return Points(self.x[chosen], self.y[chosen], self.span)
-
 
 def points_of(ink: Image) -> Points:
     """Return the inked places of a page without single specks, 150,000 at most.

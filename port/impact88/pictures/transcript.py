@@ -141,7 +141,7 @@ class Transcript:
         place = self.places[min(offset, len(self.places) - 1)]
         return divmod(int(place), self.grid.count)
 
-    def filled(self) -> NDArray[np.bool_]:
+    def filled_cells(self) -> NDArray[np.bool_]:
         """Return which cells hold type, shape (lines, cells)."""
         filled = np.zeros(len(self.grid.middles) * self.grid.count, bool)
         is_type = np.array([char not in " \n" for char in self.text + "\n"])

@@ -125,7 +125,7 @@ def verify_page(
     if transcribed is None:
         return
     transcript, quarters = transcribed
-    marks = marks_of(transcript.grid, transcript.filled())
+    marks = marks_of(transcript.grid, transcript.filled_cells())
     for verification in _judge_transcript(transcript, marks, scene):
         result = _locate_findings(page, transcript, quarters, verification, marks)
         yield _compare_layer(result, layer.pop(0)) if layer else result
