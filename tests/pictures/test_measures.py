@@ -200,9 +200,9 @@ def test_more_cells_than_an_alteration_has(cells: int, verdict: Verdict) -> None
     assert _gate_verdict(result, cast(Transcript, sheet), []) is verdict
 
 
-def test_number_without_a_cell_that_differs_is_open() -> None:
+def test_number_that_was_not_measured_is_open() -> None:
     (result,) = judge(impact88.run(impact88.sample(1)).page.replace("VAX= -13.", "VAX= -18."))
-    held = CELL._replace(margin=-1.0)
+    held = CELL._replace(name="VAY", margin=-1.0)
     sheet = SimpleNamespace(line_cell=lambda offset: (0, 0), cells=[held], sheets=[result])
     assert _gate_verdict(result, cast(Transcript, sheet), []) is Verdict.INCOMPLETE
 

@@ -215,8 +215,8 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
     A page differs only if the measured cells are those of the same predicted page, each cell that
-    differs belongs to a finding and each number that differs has such a cell, and no cell of
-    another number is in doubt.
+    differs belongs to a finding, each number that differs was measured, and no cell of another
+    number is in doubt.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
@@ -228,9 +228,9 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
         return Verdict.INCOMPLETE
     verdict = result.verdict
     if verdict is Verdict.DIFFERS:
-        altered = altered_numbers(cells)
-        is_odd = not altered <= adverse
-        is_odd |= any(f.kind is Kind.NUMBER and f.name not in altered for f in result.findings)
+        measured = {cell.name for cell in cells}
+        is_odd = not altered_numbers(cells) <= adverse
+        is_odd |= any(f.kind is Kind.NUMBER and f.name not in measured for f in result.findings)
         is_few = len(differing) <= MAX_DIFFERING or bool(result.explanation)
         return verdict if is_few and not is_odd and not in_doubt else Verdict.INCOMPLETE
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
