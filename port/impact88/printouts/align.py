@@ -75,14 +75,14 @@ class Aligner:
     def _costs_of(self, char: str) -> tuple[Costs, Costs]:
         """Return the costs of a character in each cell, and of it added after each."""
         if char not in self._costs:
-            own = [glyph_cost(cell, char) for cell in self.cells]
+            costs = [glyph_cost(cell, char) for cell in self.cells]
             outside = FOREIGN + ALIKE * char.isdigit()
-            added = [
+            extra = [
                 WRONG + ALIKE * char.isdigit() if cell.kind == "word" else cost
-                for cell, cost in zip(self.cells, own, strict=True)
+                for cell, cost in zip(self.cells, costs, strict=True)
             ]
-            added[-1] = min(added[-1], outside)
-            self._costs[char] = np.array(own), np.array([FOREIGN, *added])
+            extra[-1] = min(extra[-1], outside)
+            self._costs[char] = np.array(costs), np.array([FOREIGN, *extra])
         return self._costs[char]
 
     def align(self, glyphs: Sequence[Glyph]) -> list[Place]:
@@ -101,9 +101,9 @@ class Aligner:
         row = self.lost_sums
         steps = []  # for each number of cells passed: that at the glyph, and whether it has a cell
         for glyph in glyphs:
-            own, added = self._costs_of(glyph.char)
-            own_row = np.append(np.inf, row[:-1] + own + self.own_gaps[:, glyph.gap])
-            costs = (row + added + self.added_gaps[:, glyph.gap]).round(PLACES)
+            cell_costs, extra_costs = self._costs_of(glyph.char)
+            own_row = np.append(np.inf, row[:-1] + cell_costs + self.own_gaps[:, glyph.gap])
+            costs = (row + extra_costs + self.added_gaps[:, glyph.gap]).round(PLACES)
             is_own = own_row.round(PLACES) <= costs
             costs = (np.where(is_own, own_row, costs) - self.lost_sums).round(PLACES)
             least = np.minimum.accumulate(costs)

@@ -1,4 +1,4 @@
-"""What explains a page that differs: a short list of causes, each tested by computing the page.
+"""Explanation of a page that differs: a short list of causes, each tested by computing the page.
 
 A cause changes the scene, or the arithmetic. It is offered if it prints all but a few of the
 numbers that differ.
@@ -56,13 +56,13 @@ def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]
     if len(names) >= MIN_NUMBERS and verification.scene:
         read = {name: verification.numbers[name].read for name in names}
         for cause, fields, error in _causes(verification):
-            missed = [
+            misses = [
                 name
                 for name, text in read.items()
                 if not _agrees(fields.get(name, ""), text, error)
             ]
-            if len(missed) <= MAX_UNEXPLAINED * len(names):
-                return cause + (f"; but not {', '.join(missed)}" if missed else "")
+            if len(misses) <= MAX_UNEXPLAINED * len(names):
+                return cause + (f"; but not {', '.join(misses)}" if misses else "")
     slips = [_slip(verification, finding, alternatives) for finding in findings]
     slips += [
         f"line {verification.line_of(finding.start)}: the label {finding.read} is where the "
@@ -100,10 +100,14 @@ def _slip(
 def _causes(verification: Verification) -> Iterator[tuple[str, Mapping[str, str], float]]:
     """Yield each cause, the numbers that it prints, and their relative error."""
     scene = verification.scene
-    other = "4" if scene["M"] == "6" else "6"
-    turned = {**scene, "MU": opposite(scene["MU"])}
-    yield f"computed with M = {other} (line 350)", printed_fields({**scene, "M": other}), 0.0
-    yield "computed with the other sign of MU (line 400)", printed_fields(turned), 0.0
+    changed_m = "4" if scene["M"] == "6" else "6"
+    turned_scene = {**scene, "MU": opposite(scene["MU"])}
+    yield (
+        f"computed with M = {changed_m} (line 350)",
+        printed_fields({**scene, "M": changed_m}),
+        0.0,
+    )
+    yield "computed with the other sign of MU (line 400)", printed_fields(turned_scene), 0.0
     causes: list[tuple[str, Arithmetic, float]] = [(DOUBLE, FLOAT64, 0.0)]
     energy = verification.numbers["KI"]
     if _digits(energy.read) <= SINGLE_DIGITS:
@@ -111,10 +115,10 @@ def _causes(verification: Verification) -> Iterator[tuple[str, Mapping[str, str]
         causes.insert(not is_rounded, (SINGLE, FLOAT32, SINGLE_ERROR))
     for cause, arithmetic, error in causes:
         yield cause, _run_in(scene, arithmetic), error
-    near = {name: number.printed for name, number in verification.numbers.items()}
+    numbers = {name: number.printed for name, number in verification.numbers.items()}
     yield (
         "off in the last places: another arithmetic, or rounding where INT floors",
-        near,
+        numbers,
         LAST_ERROR,
     )
 
@@ -143,21 +147,21 @@ def _agrees(printed: str, read: str, error: float) -> bool:
     return abs(first - second) <= max(unit, abs(first) * Decimal(error))
 
 
-def _single(x: float) -> float:
+def _round_single(x: float) -> float:
     return float(np.float32(x))
 
 
 def _read_single(text: str, start: int) -> tuple[float, int]:
     value, end = FLOAT64.read(text, start)
-    return _single(value), end
+    return _round_single(value), end
 
 
 FLOAT32 = FLOAT64._replace(
     name="float32",
     read=_read_single,
-    LET=_single,
-    SIN=lambda x: _single(math.sin(x)),
-    COS=lambda x: _single(math.cos(x)),
+    LET=_round_single,
+    SIN=lambda x: _round_single(math.sin(x)),
+    COS=lambda x: _round_single(math.cos(x)),
     write=lambda x: FLOAT64.write(float(f"{x or 0.0:.{SINGLE_DIGITS - 1}E}")),
 )
 """Every number stored is rounded to 24 bits, as in GW-BASIC and its kind."""

@@ -8,7 +8,11 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-NO_GAP, BLANK_GAP, WIDE_GAP, LINE_GAP = range(4)
+NO_GAP = 0
+BLANK_GAP = 1
+WIDE_GAP = 2
+LINE_GAP = 3
+"""Kinds of gaps before a character: none, a blank, several, the end of a line."""
 SCREEN_WIDTHS = (40, 80)
 """Columns of an Apple's screen and of the usual printer: a full line goes on in the next."""
 DASHES = dict.fromkeys("−‐‑‒–—―﹣⁻", "-")
@@ -148,8 +152,8 @@ def glyphs_of(text: str) -> list[Glyph]:
             start = offset + 1
         elif char.isspace():
             gap = max(gap, WIDE_GAP if gap or char == "\t" else BLANK_GAP)
-        elif shown := plain_char(char):
-            glyphs.append(Glyph(shown, gap, offset))
+        elif capital := plain_char(char):
+            glyphs.append(Glyph(capital, gap, offset))
             gap = NO_GAP
     return glyphs
 

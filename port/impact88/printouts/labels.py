@@ -110,9 +110,9 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     start = 0
     for line in split_at_gaps(glyphs, LINE_GAP):
         stop = start + len(line)
-        others = [label for label in labels if not start <= label[1] < stop]
-        if is_note(line) and _order(glyphs, others)[0] < _order(glyphs, labels)[0] - BACKWARD / 2:
-            labels = others
+        further = [label for label in labels if not start <= label[1] < stop]
+        if is_note(line) and _order(glyphs, further)[0] < _order(glyphs, labels)[0] - BACKWARD / 2:
+            labels = further
         start = stop
     return _order(glyphs, labels)[1]
 
@@ -126,20 +126,20 @@ def _order(
     """
     costs = PASSED * np.arange(len(LABELS))
     ways = []
-    own = costs
+    sums = costs
     chars = chars_of(glyphs)
     for text, start, stop in labels:
         is_bracketed = chars[:start].endswith("(") or bool(CLOSED.match(chars, stop))
-        own = costs + [_label_cost(label, text, is_bracketed) for label in LABELS]
-        steps = own[:, None] + _STEPS
+        sums = costs + [_label_cost(label, text, is_bracketed) for label in LABELS]
+        steps = sums[:, None] + _STEPS
         ways.append(steps.argmin(axis=0))
         costs = steps.min(axis=0)
     anchors = []
-    at = int(own.argmin())
+    at = int(sums.argmin())
     for k in range(len(labels) - 1, -1, -1):
         anchors.append(Anchor(LABELS[at], *labels[k]))
         at = int(ways[k - 1][at]) if k else 0
-    return float(own.min()), anchors[::-1]
+    return float(sums.min()), anchors[::-1]
 
 
 @lru_cache(maxsize=10_000)

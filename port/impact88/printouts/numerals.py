@@ -46,11 +46,11 @@ def stored_and_printed(text: str, is_angle: bool = False) -> tuple[bytes, str] |
         None if the number is too large.
     """
     try:
-        value = printed = rounded(decimaltext.number(text))
+        value = printed_value = rounded(decimaltext.number(text))
         if is_angle:
             value = rounded(multiply(value, _RADIANS))
-            printed = rounded(divide(value, _RADIANS))
-        return to_stored(value), decimaltext.write(printed)
+            printed_value = rounded(divide(value, _RADIANS))
+        return to_stored(value), decimaltext.write(printed_value)
     except (ApplesoftError, ValueError):
         return None
 
@@ -82,9 +82,9 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
     by_bits: dict[bytes, str] = {}
     for text in [*texts, printed]:
         short = re.sub(r"^(-?)0\.", r"\1.", text)
-        stored = stored_and_printed(short, is_angle)
-        if stored and stored[1] == printed:
-            by_bits.setdefault(stored[0], short)
+        entry = stored_and_printed(short, is_angle)
+        if entry and entry[1] == printed:
+            by_bits.setdefault(entry[0], short)
     return tuple(by_bits.values())
 
 
@@ -95,18 +95,18 @@ def opposite(text: str) -> str:
 
 def is_same_value(first: str, second: str) -> bool:
     """Return True if the Apple stores two typed texts as the same number."""
-    stored = [
+    entries = [
         stored_and_printed(text) if TYPED.fullmatch(text) else None for text in (first, second)
     ]
-    return stored[0] is not None and stored[1] is not None and stored[0][0] == stored[1][0]
+    return entries[0] is not None and entries[1] is not None and entries[0][0] == entries[1][0]
 
 
 def as_printed(text: str) -> str:
     """Return a number that people wrote as Applesoft prints it; another text unchanged."""
     if not RETYPED.search(text) or not TYPED.fullmatch(text):
         return text
-    printed = stored_and_printed(text)
-    return printed[1] if printed and Decimal(printed[1]) == Decimal(text) else text
+    entry = stored_and_printed(text)
+    return entry[1] if entry and Decimal(entry[1]) == Decimal(text) else text
 
 
 @lru_cache(maxsize=4000)
@@ -115,8 +115,8 @@ def readings(chars: str) -> dict[str, float]:
 
     Characters of numbers are themselves, others are look-alikes of some or dirt; "?" is any digit.
     """
-    if PRINTED.fullmatch(printed := as_printed(chars)):
-        return {printed: RESPELLED * (printed != chars)}
+    if PRINTED.fullmatch(number := as_printed(chars)):
+        return {number: RESPELLED * (number != chars)}
     ways: list[tuple[str, float]] = [("", 0.0)]
     for char in chars:
         options = [(char, 0.0)] if char in "0123456789.-E" else []
@@ -124,21 +124,23 @@ def readings(chars: str) -> dict[str, float]:
             options = [("", RESPELLED), ("+", RESPELLED)]
         elif not options or char == "E":
             is_mark = not char.isalnum()  # rather a point or sign than a digit or dirt
-            for other in NUMBER_CHARS:
-                if char in LOOKALIKES[other]:
-                    options.append((other, ALIKE / 2 if is_mark and other in ".-" else ALIKE))
+            for digit in NUMBER_CHARS:
+                if char in LOOKALIKES[digit]:
+                    options.append((digit, ALIKE / 2 if is_mark and digit in ".-" else ALIKE))
                 elif char == "?":
-                    options.append((other, ALIKE if other.isdigit() else 2 * ALIKE))
+                    options.append((digit, ALIKE if digit.isdigit() else 2 * ALIKE))
             options.append(("", ALIKE if is_mark else 2 * ALIKE))
         elif char in ".-":
             options.append(("", 3 * ALIKE))
-        longer = ((text + one, cost + more) for (text, cost), (one, more) in product(ways, options))
+        longer = (
+            (text + piece, cost + price) for (text, cost), (piece, price) in product(ways, options)
+        )
         ways = sorted(longer, key=lambda way: way[1])[:MAX_READINGS]
     texts: dict[str, float] = {"0": ALIKE} if BARRED_ZERO.fullmatch(chars) else {}
     for text, cost in ways:
-        printed = as_printed(text)
-        if PRINTED.fullmatch(printed):
-            texts.setdefault(printed, cost + RESPELLED * (printed != text))
+        number = as_printed(text)
+        if PRINTED.fullmatch(number):
+            texts.setdefault(number, cost + RESPELLED * (number != text))
     return texts
 
 

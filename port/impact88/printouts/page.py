@@ -23,7 +23,7 @@ ROWS = (
     " WA= {WAF} WB= {WBF}",
     "*****",
 )
-"""What lines 200 to 770 print, numbers in braces; blank lines are left out."""
+"""Text of lines 200 to 770, numbers in braces; blank lines are left out."""
 PROMPTS = (0, 1)
 HEADING = 4
 ANGLE_ROW = 5
@@ -46,7 +46,7 @@ TITLES = tuple(
     else " ".join(re.findall(r"[A-Za-z]+", re.sub("{.*?}", "", text)))[:24]
     for row, text in enumerate(ROWS)
 )
-"""What a row is called in words: its labels."""
+"""Names of the rows in words: its labels."""
 TITLES = (*TITLES[:ANGLE_ROW], "five angles", *TITLES[ANGLE_ROW + 1 :])
 
 
@@ -123,13 +123,13 @@ def print_page(fields: Mapping[str, str], replies: Mapping[str, str]) -> list[Pr
     list of PrintedChar
         All characters but blanks, row by row (`ROWS`).
     """
-    shown = {**fields, **replies}
+    texts = {**fields, **replies}
     chars = []
-    for row in printed_rows(shown):
+    for row in printed_rows(texts):
         column = 0
         for part in re.split(r"({\w+})", ROWS[row]):
             name = part[1:-1] if part.startswith("{") else ""
-            text = shown.get(name, "") if name else part
+            text = texts.get(name, "") if name else part
             at = enumerate(text, column)
             chars += [PrintedChar(row, k, char, name) for k, char in at if char != " "]
             column += len(text)

@@ -27,8 +27,8 @@ Columns = Mapping[str, Sequence[str]]
 
 
 class Outcomes(NamedTuple):
-    """What a program prints for scenes: numbers, a row a scene and a column a name of `NAMES`, ""
-    for none; and the message that ends each, "" for a normal end."""
+    """Printed output of a program for scenes: numbers, with a row for each scene and a column for
+    each name of `NAMES`, "" for none; and the message that ends each, "" for a normal end."""
 
     fields: NDArray[np.bytes_]
     endings: NDArray[np.str_]
@@ -128,8 +128,8 @@ class CopyListing(Listing):
         """Return texts that may have been typed for a printed input, the shortest first."""
         if name not in self._factors:
             return super().spellings(name, printed)
-        typed = float(printed) / self._factors[name]
-        texts = [f"{float(f'{typed:.{k}g}'):.{MAX_DIGITS}G}" for k in range(1, MAX_DIGITS + 1)]
+        number = float(printed) / self._factors[name]
+        texts = [f"{float(f'{number:.{k}g}'):.{MAX_DIGITS}G}" for k in range(1, MAX_DIGITS + 1)]
         scene = {key: [text] * len(texts) for key, text in sample(1).items()}
         same = self.run({**scene, name: texts}).printed(name) == printed.encode()
         return tuple(text for text, is_same in zip(texts, same, strict=True) if is_same)

@@ -53,7 +53,7 @@ LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
 
 @dataclass
 class Slot:
-    """What stands in the place of a number.
+    """Characters in the place of a number.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Slot:
 
 @dataclass
 class Reading:
-    """What was read of one printout.
+    """Reading of one printout.
 
     Parameters
     ----------
@@ -228,14 +228,14 @@ class _Reader:
         if ending := ENDING.search(chars_of(glyphs), start):
             reading.ending = ending[0]
             glyphs = glyphs[: ending.start()]
-        used = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
+        cells_read = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
         owners = {_owner(anchor.label) for anchor in anchors}
-        used |= {SLOT_CELLS[owner] for owner in owners if owner}
+        cells_read |= {SLOT_CELLS[owner] for owner in owners if owner}
         if not PROMPT.search(chars_of(glyphs)):
-            used |= {SLOT_CELLS[reply] for reply in REPLIES}
+            cells_read |= {SLOT_CELLS[reply] for reply in REPLIES}
         before = Anchor(FIRST, "", 0, 0)
         for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
-            cells = [j for j in _cells_between(before.label, anchor.label) if j not in used]
+            cells = [j for j in _cells_between(before.label, anchor.label) if j not in cells_read]
             self._read_between(glyphs[before.stop : anchor.start], before, anchor.label, cells)
             self._read_label(anchor)
             if anchor.label.start <= before.label.start:
@@ -278,13 +278,13 @@ class _Reader:
                 slot.is_torn = torn > 0
                 slot.glyphs += glyphs[count : count + torn]
                 count += torn
-            rest = glyphs[count:]
+            tail = glyphs[count:]
         else:
-            rest = glyphs
+            tail = glyphs
             if owner:
                 cells = [SLOT_CELLS[owner], *cells]
-        if rest:
-            slots = self._align(rest, cells, before.label, behind, is_exact and not count) | slots
+        if tail:
+            slots = self._align(tail, cells, before.label, behind, is_exact and not count) | slots
         for name, slot in slots.items():
             if name == "ANGLES":
                 self._add_angles(slot)
@@ -334,36 +334,34 @@ class _Reader:
         A number without a label counts only if its line has as many numbers as places.
         """
         aligner = _aligner(tuple(cells))
-        own: dict[str, list[int]] = {}
-        labelled: set[str] = {*MANY}
+        members_of: dict[str, list[int]] = {}
+        owners: set[str] = {*MANY}
         foreign: set[int] = set()
         for i, (k, is_own) in enumerate(aligner.align(glyphs) if cells else ()):
             j = cells[k - 1]
             name, kind = CELLS[j].name, CELLS[j].kind if k else ""
             if is_own and kind == "slot":
-                own[name] = [i]
+                members_of[name] = [i]
             elif is_own and kind == "word":
                 self.reading.chars[j] = glyphs[i]
                 if CELLS[j].char == glyphs[i].char != "=":
-                    labelled.add(name)
+                    owners.add(name)
             elif (
                 kind == "slot"
-                and own.get(name, [])[-1:] == [i - 1]
+                and members_of.get(name, [])[-1:] == [i - 1]
                 and (glyphs[i].gap < LINE_GAP or name in MANY)
             ):
-                own[name].append(i)
+                members_of[name].append(i)
             else:
                 foreign.add(i)
         if not cells:
             foreign = {*range(len(glyphs))}
         slots: dict[str, Slot] = {}
-        for name, members in own.items():
+        for name, members in members_of.items():
             places = sum(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells)
             is_whole = _is_whole(glyphs, members)
-            is_single = is_whole and places == _count_numbers(glyphs, members, own)
-            label = (
-                "exact" if is_owned and name == _owner(before) else "damaged" * (name in labelled)
-            )
+            is_single = is_whole and places == _count_numbers(glyphs, members, members_of)
+            label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in owners)
             if not label and not is_single:
                 foreign.update(members)
                 continue
@@ -375,8 +373,8 @@ class _Reader:
             slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
             if members:
                 slots[name] = slot
-        kept = _within_page(glyphs, foreign, before is FIRST, behind is LAST)
-        for _, run in groupby(enumerate(kept), lambda pair: pair[1] - pair[0]):
+        indices = _within_page(glyphs, foreign, before is FIRST, behind is LAST)
+        for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
 

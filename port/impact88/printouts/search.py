@@ -37,7 +37,7 @@ Texts = dict[str, str]
 
 
 class Option(NamedTuple):
-    """What an input may be: its printed and its typed text, and their cost."""
+    """Possible text of an input: its printed and its typed text, and their cost."""
 
     printed: str
     typed: str
@@ -124,12 +124,12 @@ def find_scenes(
         if best[0].mismatch < CONTRADICTED:
             break
         for base in best:
-            slipped = search.replay(search.edits(base.candidate))
-            if slipped and slipped[0].cost < best[0].cost:
+            edits = search.replay(search.edits(base.candidate))
+            if edits and edits[0].cost < best[0].cost:
                 break
         else:
             break
-        best = sorted([*best, *slipped], key=lambda scene: scene.cost)[:BEST]
+        best = sorted([*best, *edits], key=lambda scene: scene.cost)[:BEST]
     # slips are believed only where they explain most of what differs
     if 2 * best[0].mismatch > as_read.mismatch:
         return [as_read], []
@@ -154,8 +154,8 @@ def _options(
     options: list[Option] = []
     for text, cost in sorted(texts.items(), key=lambda item: item[1])[:MAX_OPTIONS]:
         is_typed = entry is not None and entry[1] == text
-        for typed in (reply,) if is_typed else program.spellings(name, text)[:1]:
-            options.append(Option(text, typed, cost))
+        for entry_text in (reply,) if is_typed else program.spellings(name, text)[:1]:
+            options.append(Option(text, entry_text, cost))
     return options
 
 
@@ -173,9 +173,9 @@ def _combinations(
     candidates = []
     for cost, (m, *way) in zip(costs.tolist(), ways.tolist(), strict=True):
         options = [column[k] for column, k in zip(columns.values(), way, strict=True)]
-        printed = {name: option.printed for name, option in zip(columns, options, strict=True)}
-        typed = {name: option.typed for name, option in zip(columns, options, strict=True)}
-        candidates.append(Candidate(printed, typed, ms[m][0], cost))
+        numbers = {name: option.printed for name, option in zip(columns, options, strict=True)}
+        entries = {name: option.typed for name, option in zip(columns, options, strict=True)}
+        candidates.append(Candidate(numbers, entries, ms[m][0], cost))
     return candidates
 
 
@@ -205,15 +205,15 @@ class _Search:
         A number that was read cleanly is contradicted by a slip in it.
         """
         edits = []
-        printed, typed, m, cost = candidate
+        numbers, entries, m, cost = candidate
         for name in self.read:
-            text = printed[name]
+            text = numbers[name]
             texts = [*self.program.spellings(name, text)]
             if name == "MUP":  # -10 printed of a typed 10 is no pivot
-                texts.append(opposite(typed[name]))
-            for rank, spelled in enumerate(texts):
+                texts.append(opposite(entries[name]))
+            for rank, spelling in enumerate(texts):
                 doubt = PASSED * (1 + rank / 9)
-                edits.append(Candidate(printed, {**typed, name: spelled}, m, cost + doubt))
+                edits.append(Candidate(numbers, {**entries, name: spelling}, m, cost + doubt))
             slot = self.slots.get(name)
             is_clean = slot is not None and slot.is_clean
             read = slot.text if slot else text
@@ -221,7 +221,7 @@ class _Search:
             for slip, doubt in chain(ways, slips(text), slips(read)):
                 doubt += CONTRADICTED * (is_clean and slip != read)
                 change = {name: slip}
-                edits.append(Candidate(printed | change, typed | change, m, cost + doubt))
+                edits.append(Candidate(numbers | change, entries | change, m, cost + doubt))
         return edits
 
     def replay(self, candidates: list[Candidate]) -> list[Recovered]:
@@ -231,18 +231,18 @@ class _Search:
         the other way.
         """
         run = self.program.run(_columns(candidates))
-        printed = run.printed("MUP")
-        read = np.array([candidate.printed["MUP"] for candidate in candidates], printed.dtype)
-        turned = np.flatnonzero((printed != read) & (read != b"0") & (printed != b"")).tolist()
-        for k in turned:
-            typed = candidates[k].typed
-            typed = {**typed, "MUP": opposite(typed["MUP"])}
-            candidates[k] = candidates[k]._replace(typed=typed)
-        if turned:
-            other = self.program.run(_columns([candidates[k] for k in turned]))
-            run.fields[turned], run.endings[turned] = other
-        printed = run.printed("MUP")
-        mismatch = CONTRADICTED * ((printed != read) & (printed != b""))
+        mup = run.printed("MUP")
+        read = np.array([candidate.printed["MUP"] for candidate in candidates], mup.dtype)
+        rows = np.flatnonzero((mup != read) & (read != b"0") & (mup != b"")).tolist()
+        for k in rows:
+            entries = candidates[k].typed
+            entries = {**entries, "MUP": opposite(entries["MUP"])}
+            candidates[k] = candidates[k]._replace(typed=entries)
+        if rows:
+            outcomes = self.program.run(_columns([candidates[k] for k in rows]))
+            run.fields[rows], run.endings[rows] = outcomes
+        mup = run.printed("MUP")
+        mismatch = CONTRADICTED * ((mup != read) & (mup != b""))
         for name, costs in self.expected.items():
             mismatch += _result_costs(run.printed(name), costs)
         total = mismatch + np.array([candidate.cost for candidate in candidates])
@@ -254,8 +254,10 @@ class _Search:
 
 def _columns(candidates: Sequence[Candidate]) -> dict[str, list[str]]:
     """Return the scenes of candidates as columns."""
-    columns = {scene_name(name): [one.typed[name] for one in candidates] for name in INPUTS}
-    return {**columns, "M": [one.M for one in candidates]}
+    columns = {
+        scene_name(name): [candidate.typed[name] for candidate in candidates] for name in INPUTS
+    }
+    return {**columns, "M": [candidate.M for candidate in candidates]}
 
 
 def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> NDArray[np.float64]:

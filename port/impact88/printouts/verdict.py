@@ -77,21 +77,21 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
     scenes, missing = find_scenes(reading, given, program)
     if not scenes:
         return _without_scene(reading, missing)
-    recovered, *alternatives = scenes
-    page = recovered.fields, recovered.scene, recovered.ending
+    best, *alternatives = scenes
+    page = best.fields, best.scene, best.ending
     comparison = Comparison(reading, *page, given)
     findings = comparison.findings()
-    if layout := program.layout(recovered.scene):
-        expected = {*map(_without_place, Comparison(layout, *page).findings())}
-        findings = [finding for finding in findings if _without_place(finding) not in expected]
-    findings = comparison.settled(findings)
+    if layout := program.layout(best.scene):
+        own_findings = {*map(_without_place, Comparison(layout, *page).findings())}
+        findings = [finding for finding in findings if _without_place(finding) not in own_findings]
+    findings = comparison.settle(findings)
     verification = Verification(
         verdict_of(findings),
-        recovered.scene,
+        best.scene,
         comparison.numbers,
         tuple(findings),
-        unseen_digits(recovered, program),
-        page=tuple(print_page(recovered.fields, comparison.typed_replies())),
+        unseen_digits(best, program),
+        page=tuple(print_page(best.fields, comparison.typed_replies())),
         text=reading.text,
         span=reading.span(),
     )
@@ -241,25 +241,25 @@ class Comparison:
                     self.finding(kind, CELLS[cell].name, word.glyphs, word.printed, cell)
                 )
         for row in self.lost_rows:
-            cell = next(j for j, one in enumerate(CELLS) if one.row == row)
+            cell = next(j for j, c in enumerate(CELLS) if c.row == row)
             findings.append(self.finding(Kind.ROW_LOST, TITLES[row], [], TITLES[row], cell))
         findings += [self.finding(Kind.FOREIGN, "", run, "", 0) for run in self.reading.foreign]
         return findings
 
     def _number_kind(self, name: str) -> Kind | None:
         """Return what a number is that was not read as printed; None for one that was."""
-        slot, printed = self.reading.slots.get(name), self.fields.get(name, "")
+        slot, text = self.reading.slots.get(name), self.fields.get(name, "")
         if not slot:
             return Kind.UNREAD
         read = slot.text
-        if read == printed and slot.is_clean:
+        if read == text and slot.is_clean:
             return None
-        if printed in (read, as_printed(read), read.strip("()[]{}")) or printed in readings(read):
+        if text in (read, as_printed(read), read.strip("()[]{}")) or text in readings(read):
             return Kind.DOUBT
         if slot.is_clean:
-            is_end = slot.is_bounded and not self._is_cut(slot, printed)
+            is_end = slot.is_bounded and not self._is_cut(slot, text)
             return Kind.NUMBER if is_end else Kind.UNREAD
-        return Kind.DOUBT if self.is_machine_read and _is_alike(read, printed) else Kind.UNREAD
+        return Kind.DOUBT if self.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def _is_cut(self, slot: Slot, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line."""
@@ -275,17 +275,17 @@ class Comparison:
 
     def _reply_findings(self) -> Iterator[Finding]:
         """Yield the replies that are not the scene's numbers."""
-        for reply, printed in self.typed_replies().items():
+        for reply, reply_text in self.typed_replies().items():
             if not (slot := self.reading.slots.get(reply)):
                 continue
             texts = [self.reading.replies.get(name, "") for name in REPLIES[reply]]
-            is_same = all(map(is_same_value, texts, printed.split(",")))
+            is_same = all(map(is_same_value, texts, reply_text.split(",")))
             is_exact = slot.label == "exact"
             if not is_same or not is_exact:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
                 is_number = is_clean and not is_same and not self.is_machine_read
                 kind = Kind.NUMBER if is_number else Kind.DOUBT
-                yield self.finding(kind, reply, slot.glyphs, printed, 0)
+                yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _words(self) -> tuple[list[Word], list[int]]:
         """Return the words and marks that the program prints, and the rows of which none was read.
@@ -328,18 +328,20 @@ class Comparison:
                 finding = finding._replace(kind=Kind.NUMBER)
             by_row.setdefault(CELLS[SLOT_CELLS[name]].row, []).append(finding)
         rows = {row: {name for name in NAMES if ROW_OF[name] == row} for row in by_row}
-        whole = [row for row in by_row if rows[row] <= {finding.name for finding in by_row[row]}]
+        full_rows = [
+            row for row in by_row if rows[row] <= {finding.name for finding in by_row[row]}
+        ]
         for row, glyph in self.reading.disorder:
-            kind = Kind.ROW_TWICE if row in whole else Kind.DISORDER
+            kind = Kind.ROW_TWICE if row in full_rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
-        for row, repeated in by_row.items():
-            is_other = any(finding.kind is Kind.NUMBER for finding in repeated)
-            if row not in whole:
-                yield from (finding._replace(kind=Kind.TWICE) for finding in repeated)
+        for row, doubles in by_row.items():
+            is_other = any(finding.kind is Kind.NUMBER for finding in doubles)
+            if row not in full_rows:
+                yield from (finding._replace(kind=Kind.TWICE) for finding in doubles)
             elif is_other:
-                yield from repeated
+                yield from doubles
 
-    def settled(self, findings: Sequence[Finding]) -> list[Finding]:
+    def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
 
         They do not where inputs were not read; where more of them differ than an alteration
@@ -372,8 +374,8 @@ def _is_unsure(finding: Finding) -> bool:
 def _is_alike(read: str, printed: str) -> bool:
     """Return True if at least half of a number's characters were read, in order."""
     matchers = [SequenceMatcher(None, text, printed) for text in (read, *readings(read))]
-    shared = [sum(block.size for block in one.get_matching_blocks()) for one in matchers]
-    return 2 * max(shared) >= len(printed)
+    counts = [sum(block.size for block in m.get_matching_blocks()) for m in matchers]
+    return 2 * max(counts) >= len(printed)
 
 
 def _is_slight(finding: Finding) -> bool:

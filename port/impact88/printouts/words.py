@@ -70,7 +70,7 @@ def write(
     name = "standard input" if file == "-" else file
     line = verification.line_of(verification.span[0])
     lines = [f"{name}, printout {number} (line {line}): {TITLES[verification.verdict]}"]
-    count = sum(bool(one.read) for one in verification.numbers.values())
+    count = sum(bool(number.read) for number in verification.numbers.values())
     lines.append("  " + SUMMARIES[verification.verdict].format(count=count))
     kinds = {finding.kind for finding in verification.findings}
     if verification.verdict is Verdict.DIFFERS and kinds & {Kind.MISREAD, Kind.DOUBT}:
@@ -182,7 +182,7 @@ def record(
         "span": [*verification.span],
         "verdict": verification.verdict.value,
         "scene": dict(verification.scene),
-        "numbers": {name: one._asdict() for name, one in verification.numbers.items()},
+        "numbers": {name: number._asdict() for name, number in verification.numbers.items()},
         "findings": [
             {
                 **finding._asdict(),
