@@ -11,6 +11,7 @@ The costs are those of `costs`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,7 @@ def glyph_cost(cell: Cell, char: str) -> float:
     return (ALIKE if is_alike else WRONG) + FOREIGN * (char in NUMBER_CHARS)
 
 
+@lru_cache(maxsize=500)
 class Aligner:
     """Alignment with some cells of the page.
 

@@ -10,7 +10,6 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -145,10 +144,6 @@ class Reading:
             for text, cost in readings(chars_of(next(split_at_gaps(slot.glyphs)))).items():
                 texts.setdefault(text, cost + WRONG)
         return texts
-
-    def text_of(self, name: str) -> str:
-        """Return the characters in the place of a number, "" for none."""
-        return self.slots[name].text if name in self.slots else ""
 
     def places(self) -> dict[int, tuple[int, int]]:
         """Return the place of each cell of which something was read."""
@@ -333,7 +328,7 @@ class _Reader:
 
         A number without a label counts only if its line has as many numbers as places.
         """
-        aligner = _aligner(tuple(cells))
+        aligner = Aligner(tuple(CELLS[j] for j in cells))
         members_of: dict[str, list[int]] = {}
         owners: set[str] = {*MANY}
         foreign: set[int] = set()
@@ -456,11 +451,6 @@ def _count_torn(rest: Sequence[Glyph]) -> int:
         if digits < len(word):
             break
     return count
-
-
-@lru_cache(maxsize=500)
-def _aligner(cells: tuple[int, ...]) -> Aligner:
-    return Aligner([CELLS[j] for j in cells])
 
 
 def _within_page(

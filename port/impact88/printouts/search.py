@@ -31,6 +31,8 @@ BEST = 3
 """Scenes from which the search for slips goes on."""
 MAX_ROUNDS = 4
 """Slips that a scene may have."""
+TINY = 1e-38
+"""Less than any number that the Apple prints."""
 FINAL_SPINS = ("WAF", "WBF")
 
 Texts = dict[str, str]
@@ -269,8 +271,7 @@ def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> ND
         return np.where(printed == b"", 0.0, LOST)
     numbers = np.where(printed == b"", b"nan", printed).astype(float)
     read = float(next(iter(costs)))
-    sizes = np.abs(numbers) + abs(read)
-    distances = np.divide(np.abs(numbers - read), sizes, out=np.zeros(len(sizes)), where=sizes > 0)
+    distances = np.abs(numbers - read) / (np.abs(numbers) + abs(read) + TINY)
     total: NDArray[np.float64] = CONTRADICTED * (1 + np.nan_to_num(distances, nan=1.0))
     for text, cost in costs.items():
         total[printed == text.encode()] = cost

@@ -176,7 +176,10 @@ class Comparison:
         self.words, self.lost_rows = self._words()
         names = [name for name in NAMES if name in fields or name in reading.slots]
         if given:  # of a page with results only
-            names = [name for name in names if name in reading.slots or self._is_due(name, given)]
+            due = [
+                n for n in names if scene_name(n) not in given and ROW_OF[n] not in self.lost_rows
+            ]
+            names = [name for name in names if name in reading.slots or name in due]
             self.lost_rows = []
         self.numbers = {name: self._number(name) for name in names}
         misread = [
@@ -184,11 +187,9 @@ class Comparison:
             for j, glyph in reading.chars.items()
             if glyph.char != CELLS[j].char and glyph.char.isalnum()
         ]
-        damaged = [name for name in names if _NO_NUMBER.search(reading.text_of(name))]
+        numbers = [slot.text for name, slot in reading.slots.items() if name in NAMES]
+        damaged = [*filter(_NO_NUMBER.search, numbers)]
         self.is_machine_read = len(damaged) + len(misread) >= MACHINE_READ
-
-    def _is_due(self, name: str, given: Mapping[str, str]) -> bool:
-        return scene_name(name) not in given and ROW_OF[name] not in self.lost_rows
 
     def finding(
         self, kind: Kind, name: str, glyphs: Sequence[Glyph], printed: str, cell: int
@@ -254,7 +255,7 @@ class Comparison:
         read = slot.text
         if read == text and slot.is_clean:
             return None
-        if text in (read, as_printed(read), read.strip("()[]{}")) or text in readings(read):
+        if text == read or text in readings(read):
             return Kind.DOUBT
         if slot.is_clean:
             is_end = slot.is_bounded and not self._is_cut(slot, text)
@@ -335,10 +336,9 @@ class Comparison:
             kind = Kind.ROW_TWICE if row in full_rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
         for row, doubles in by_row.items():
-            is_other = any(finding.kind is Kind.NUMBER for finding in doubles)
             if row not in full_rows:
                 yield from (finding._replace(kind=Kind.TWICE) for finding in doubles)
-            elif is_other:
+            elif Kind.NUMBER in {finding.kind for finding in doubles}:
                 yield from doubles
 
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
