@@ -52,7 +52,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="module")
 def original_datadir() -> Path:
-    """Where pytest-regressions keeps its files; the plugin's way of choosing the folder."""
+    """Return the folder of the golden files; the plugin's way of choosing the folder."""
     return ROOT / "golden" / "printouts"
 
 

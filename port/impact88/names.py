@@ -183,7 +183,7 @@ COEFFICIENTS = ("E", "MUP", "EM")
 """The coefficients as results: friction as the signed P_t/P_n."""
 SPINS = ("WA", "WB", "WAF", "WBF")
 UNKNOWNS = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
-"""What an impact is solved for, from other values."""
+"""Quantities that an impact can be solved for, from other values."""
 
 PIVOT = -10.0  # the MU that makes the contact point a pivot (lines 260, 390 and 510)
 

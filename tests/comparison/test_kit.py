@@ -32,7 +32,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def rows(folder: Path) -> list[dict[str, str]]:
-    """What the starter program in Python answers."""
+    """Return the answers of the starter program in Python."""
     with open(folder / "vectors.csv") as file:
         run = subprocess.run(
             [sys.executable, str(folder / "impact.py")],

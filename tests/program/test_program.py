@@ -27,7 +27,7 @@ def results(printout: str) -> str:
 
 
 def replies(printout: str) -> list[str]:
-    """What was typed after each question mark, without blanks (and without INPUT's NUL)."""
+    """Return what was typed after each question mark, without blanks (and without INPUT's NUL)."""
     return [re.sub(r"[ \0]", "", reply) for reply in re.findall(r"\?(.*)", printout)]
 
 

@@ -1,4 +1,4 @@
-"""Where the captures of the real ROM are, and how to read them.
+"""Captures of the real ROM: their folder, and functions that read them.
 
 IMPACT88_CAPTURES names a folder laid out as golden/ is (arithmetic/, programs/, corners/,
 scenes.jsonl.gz, fuzz.jsonl.gz); without it golden/ itself is read.
@@ -50,7 +50,7 @@ def arithmetic_files() -> list[Path]:
 
 
 def vector_file_id(path: Path) -> str:
-    """What a test calls such a file."""
+    """Return the name of a file of vectors in a test's name."""
     return f"{path.parent.name}-{path.name.split('.')[0]}"
 
 

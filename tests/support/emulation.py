@@ -95,8 +95,8 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
 
 
 def first_difference(scene: Scene, text: str | None = None) -> Any:
-    """Where port and emulator part on a scene: the two reports, or None if they agree on every bit
-    after every line."""
+    """Return the first difference of port and emulator on a scene: the two reports, or None if
+    they agree on every bit after every line."""
     port, port_run = port_reports(scene)
     emulator, emulator_run = emulator_reports(scene, text)
     mine, theirs = changes(port), changes(emulator)

@@ -1,4 +1,4 @@
-"""Of cases that differ in a value, some are enough for the default run: the others are long."""
+"""Cases that differ in a value: some for the default run, the others marked as long."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -9,7 +9,7 @@ import pytest
 def long_but(values: Iterable[Any], kept: Sequence[int] = (0,)) -> list[Any]:
     """Return the values of a parameter, all but those at the places ``kept`` marked as long.
 
-    A tuple stands for several parameters, as pytest has it.
+    A tuple gives several parameters, as pytest has it.
     """
     found = []
     for place, value in enumerate(values):

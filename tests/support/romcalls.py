@@ -31,7 +31,8 @@ OPERATIONS = {
     "fout": "PRINT",
     "cmp": "COMPARE",
 }
-LESS, MORE = 4, 1
+LESS = 4
+MORE = 1
 
 
 def call(operation: str, first: str, second: str, extension: str) -> str | None:

@@ -1,4 +1,4 @@
-"""How far results may be off: 64 movements of the scene.
+"""Error bounds of results: 64 movements of the scene.
 
 A result computed with an error of a few times what rounding every number of the scene to a double
 does to it (a backward stable one) is as accurate as its scene. `movements` measures that, and
@@ -22,7 +22,8 @@ UNIT = 2.0**-53  # unit roundoff: the largest relative change by rounding to a d
 ROUNDINGS = 64.0  # of every number of the scene; eight times the most seen in the six velocities
 STEP = 2.0**-36  # relative change: far above rounding, far below the nearest singularity tried
 VELOCITY_RESULTS = tuple(name for name, row in RESULTS.items() if row.unit == VELOCITY)
-INITIAL_VELOCITIES, INITIAL_SPINS = ("UX", "UY", "VX", "VY"), ("WA", "WB")
+INITIAL_VELOCITIES = ("UX", "UY", "VX", "VY")
+INITIAL_SPINS = ("WA", "WB")
 SPIN_RESULTS = tuple(name for name, row in RESULTS.items() if row.unit == SPIN)
 
 

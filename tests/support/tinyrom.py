@@ -12,7 +12,9 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-START, CODE, VALUES = 0xD000, 0xE000, 0xD800
+START = 0xD000
+CODE = 0xE000
+VALUES = 0xD800
 COUT = 0xFDED
 
 _OPCODES = {  # mnemonic: mode -> opcode

@@ -8,9 +8,26 @@ from typing import Any
 from captures import ROOT
 
 FROM_CHAPTER = {
-    **{"ma": "MA", "mb": "MB", "Ia": "IA", "Ib": "IB", "da": "DA", "db": "DB", "Ga": "GA"},
-    **{"pa": "PA", "pb": "PB", "ta": "TA", "tb": "TB", "e": "E", "mu": "MU", "em": "EM"},
-    **{"ux": "UX", "uy": "UY", "wa": "WA", "vx": "VX", "vy": "VY", "wb": "WB"},
+    "ma": "MA",
+    "mb": "MB",
+    "Ia": "IA",
+    "Ib": "IB",
+    "da": "DA",
+    "db": "DB",
+    "Ga": "GA",
+    "pa": "PA",
+    "pb": "PB",
+    "ta": "TA",
+    "tb": "TB",
+    "e": "E",
+    "mu": "MU",
+    "em": "EM",
+    "ux": "UX",
+    "uy": "UY",
+    "wa": "WA",
+    "vx": "VX",
+    "vy": "VY",
+    "wb": "WB",
 }
 """The names golden/reference-cases.json uses -> the scene's."""
 

@@ -31,13 +31,13 @@ TOOLS = {".c": "gcc", ".js": "node", ".awk": "awk"}
 BODY = "    # here the program\n"
 
 Edit = tuple[str, str]
-"""What stands in the correct program, and what stands there in this one."""
+"""Text of the correct program, and the text that replaces it."""
 Numbers = dict[str, float]
 Columns = dict[str, list[str]]
 
 
 class Wrong(NamedTuple):
-    """A wrong program: the correct one, its edits, what it is to be told as, and what stands in the
+    """A wrong program: the correct one, its edits, the cause to be named, and the
     condition under which it is wrong ("" where it always is)."""
 
     program: str
@@ -48,11 +48,11 @@ class Wrong(NamedTuple):
 
 def _read() -> dict[str, list[Wrong]]:
     """Return `CATALOGUE`."""
-    found: dict[str, list[Wrong]] = {}
+    catalogue: dict[str, list[Wrong]] = {}
     text = FOLDER.with_name("wrongprograms.txt").read_text(encoding="utf-8")
     for line in text.splitlines():
         if line.startswith("## "):
-            cases = found.setdefault(line[3:].partition(":")[0], [])
+            cases = catalogue.setdefault(line[3:].partition(":")[0], [])
         elif line.startswith("    "):
             says, _, where = line.strip().rstrip("]").partition("[")
             cases[-1] = cases[-1]._replace(says=says.strip(), where=where)
@@ -60,23 +60,23 @@ def _read() -> dict[str, list[Wrong]]:
             program, *texts = (part.replace("\\n", "\n") for part in line.split(" | "))
             edits = zip(texts[::2], texts[1::2], strict=True)
             cases.append(Wrong(program, tuple(edits)))
-    return found
+    return catalogue
 
 
 CATALOGUE = _read()
 """Section of the list -> its wrong programs."""
 CONVENTIONS = {case.says: case for case in CATALOGUE["conventions"]}
-"""What is to be told, in these words -> the program."""
+"""Cause to be named -> the program."""
 
 
 def is_available(program: str) -> bool:
-    """Whether the program's compiler or interpreter is on this machine."""
+    """Return True if the program's compiler or interpreter is installed."""
     tool = TOOLS.get(Path(program).suffix)
     return tool is None or shutil.which(tool) is not None
 
 
 def source(program: str, edits: Sequence[Edit] = ()) -> str:
-    """The text of a program with edits; what each changes must be in it exactly once."""
+    """Return the text of a program with edits; what each changes must be in it exactly once."""
     path = FOLDER / (program if program in FOREIGN else f"{program}.txt")
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".txt" and "def run(" not in text:
@@ -94,8 +94,8 @@ def answers(
     flags: tuple[str, ...] = (),
     throughout: Sequence[Edit] = (),
 ) -> Columns:
-    """What a program answers: the texts it writes, by result, "" where it refuses. ``flags``: the
-    compiler's; ``throughout``: edits of what may be in it many times."""
+    """Return the answers of a program: the texts it writes, by result, "" where it
+    refuses. ``flags``: the compiler's; ``throughout``: edits of what may be in it many times."""
     text = source(program, edits)
     for old, new in throughout:
         assert old in text, (program, old)

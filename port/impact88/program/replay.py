@@ -57,13 +57,15 @@ COMPUTED = {
 
 LINE_340 = slice(31, 35)
 """The values that line 340 stores, among all that a run stores."""
-ROWS, COLUMNS = 7, 8  # of the array A
+ROWS = 7  # of the array A
+COLUMNS = 8
 BLOCK = 4096
 """Scenes of one call of the library: enough for its overhead to vanish, few enough for the
 processor's cache."""
-END_LINE, ZERO_DETERMINANT_LINE = 780, 1160
-CALL_LINE, FIRST_SUBROUTINE = 570, 1000
-"""The line that calls the subroutines, and the first of theirs."""
+END_LINE = 780
+ZERO_DETERMINANT_LINE = 1160
+CALL_LINE = 570  # calls the subroutines
+FIRST_SUBROUTINE = 1000
 FINAL_SPINS = ("WAF", "WBF")
 """Results that line 750 passes over unless M is N."""
 _VARIABLES = (

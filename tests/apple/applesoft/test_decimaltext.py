@@ -59,7 +59,7 @@ def test_a_number_ends_where_it_no_longer_is_one():
 
 
 STEP = 2.0**-31
-"""What MUL10 or DIV10 may be off, relatively: 2^-32 for rounding to 32 bits, and as much again for
+"""Relative error that MUL10 or DIV10 may have: 2^-32 for rounding to 32 bits, and as much again for
 the quotient cut after 33."""
 WRITING = 41 * STEP + 0.5e-8 + 1e-9
 """Up to 39 steps bring a number to nine digits, after a multiplication by a billion and before the

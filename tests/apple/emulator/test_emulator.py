@@ -38,8 +38,8 @@ def test_every_statement_s_method_is_named_for_a_keyword():
         )
 
 
-def test_every_statement_that_is_done_stands_in_a_captured_program():
-    """What the machine does is compared with the ROM: no statement is there on trust. That is said
+def test_every_statement_is_in_a_captured_program():
+    """All behaviour is compared with the ROM: no statement is there on trust. That is said
     of the project's own captures, whatever others a folder holds."""
     machine = session("", "")[0].machine
     tokens_in_programs = {

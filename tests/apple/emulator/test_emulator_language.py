@@ -1,4 +1,4 @@
-"""What Applesoft does where no captured program looks: each by the ROM's rule, in a few lines."""
+"""Rules of Applesoft that no captured program shows: each by the ROM's rule, in a few lines."""
 
 from __future__ import annotations
 
