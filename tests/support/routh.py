@@ -85,5 +85,5 @@ def judged(scene, mu):
     the signed P_t/P_n ``mu``."""
     pn, pt, gn, gt, K, tt = impulse(scene, np.asarray(mu, np.float64))
     low, high = possible(gt, K, tt, pn)
-    room = 1e-9 * np.abs(pn)
-    return (gn < 0) & (pn > 0), (pt >= low - room) & (pt <= high + room)
+    slack = 1e-9 * np.abs(pn)
+    return (gn < 0) & (pn > 0), (pt >= low - slack) & (pt <= high + slack)

@@ -272,7 +272,7 @@ _ENTRIES = {
         "STA ($46),Y", "minus:", "LDY #$00", "LDA $9D", "STA ($46),Y", "RTS",
     ],
 }  # fmt: skip
-"""Entry points of the arithmetic, and what stands there."""
+"""Entry points of the arithmetic, and their addresses."""
 
 
 def assemble(lines: list[str], origin: int, symbols: Mapping[str, int]) -> tuple[bytes, dict]:

@@ -1,7 +1,7 @@
-"""Other programs for the planar impact, right and wrong, and what each answers to scenes.
+"""Other programs for the planar impact, right and wrong, and their answers to scenes.
 
 ``programs/`` holds correct ones, in C, JavaScript, awk and Python (``.txt``; one without ``run`` of
-its own stands in ``frame.txt``). A wrong one is a correct one with edits of its text, as
+its own is put into ``frame.txt``). A wrong one is a correct one with edits of its text, as
 ``wrongprograms.txt`` lists them. The package has no part in any of them.
 """
 

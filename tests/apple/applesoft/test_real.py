@@ -154,7 +154,7 @@ def test_comparisons_take_reals_only():
 @given(middling, middling)
 def test_sum_is_near_the_exact_sum(a, b):
     """A unit of the last of 32 bits of the larger operand, in which the left one's rounding, bits
-    shifted out and a sum lost in the extension all have room."""
+    shifted out and a sum lost in the extension are all included."""
     total = exact(real.add(a, b))
     true = exact(a) + exact(b)
     size = max(abs(exact(a)), abs(exact(b)))

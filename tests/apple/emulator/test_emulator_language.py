@@ -123,7 +123,7 @@ def test_ten_loops_deep_and_no_deeper():
 
 
 @pytest.mark.parametrize(
-    ("loops", "subroutines", "last", "room"),
+    ("loops", "subroutines", "last", "fits"),
     [
         # the stack begins at 248, a loop takes 18 bytes and a subroutine 7; CHKMEM asks for nine
         # words of a loop, three of a subroutine, and 54 bytes more
@@ -137,12 +137,12 @@ def test_ten_loops_deep_and_no_deeper():
         (1, 22, "X=1+1", False),
     ],
 )
-def test_loops_and_subroutines_share_the_stack(loops, subroutines, last, room):
+def test_loops_and_subroutines_share_the_stack(loops, subroutines, last, fits):
     lines = [f"FOR A{number}=1 TO 1" for number in range(loops)]
     lines += [f"GOSUB {10 * (loops + number + 1)}" for number in range(subroutines)]
     program = "\n".join(f"{10 * number} {line}" for number, line in enumerate([*lines, last]))
     error = f"\n?OUT OF MEMORY ERROR{BEL} IN {10 * len(lines)}"
-    assert output(f"{program}\n900 END") == ("" if room else error)
+    assert output(f"{program}\n900 END") == ("" if fits else error)
 
 
 def test_parentheses_as_deep_as_the_stack():
@@ -155,7 +155,7 @@ def test_parentheses_as_deep_as_the_stack():
 
 
 def test_the_stack_decides_at_the_moment():
-    """25 subroutines deep an addition has no room, a constant has."""
+    """25 subroutines deep an addition does not fit, a constant does."""
     program = "10 N=N+1:IF N<{n} THEN GOSUB 10\n20 PRINT {what}:END"
     assert output(program.format(n=24, what="N+N")) == "48\n"
     error = f"\n?OUT OF MEMORY ERROR{BEL} IN 10"
