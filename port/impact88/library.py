@@ -39,7 +39,8 @@ def _load() -> Any:
 _library = _load()
 
 accelerated: str | None = _library.instructions().decode() if _library else None
-"""Instruction set that the compiled library uses; None where numpy computes everything."""
+"""Instruction set of the compiled library; None without it. A part whose sources have changed since
+it was built is not taken from it (`loaded`)."""
 
 
 def loaded(digest_function: str, digest: str) -> Any:

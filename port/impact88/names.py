@@ -5,7 +5,7 @@ table heading, help text and error message takes symbol, meaning and unit from h
 
 The listing is "independent of units" (User's Information): any consistent set works, except that
 angles are typed and printed in degrees and spins are in radians per unit of time. So ``unit`` is a
-rule ("mass·length²"), of which a system of units (`collision.units.SYSTEMS`) makes a unit.
+rule ("mass·length²"), of which a system of units (`cases.units`) makes a unit.
 
 >>> impact88.names.SCENE["MU"].meaning
 'equivalent friction coefficient; -10 makes a pivot'
