@@ -149,21 +149,17 @@ class TestTables:
         table["WAF"] = np.full(len(TEXTS), "")
         comparison = impact88.compare(table)
         assert not comparison.passed
-        assert "WAF is empty in every row" in comparison.notes
+        assert "WAF has no number in any row" in comparison.notes
 
     @pytest.mark.parametrize(
-        ("order", "words"),
-        [
-            (lambda n: np.roll(np.arange(n), 1), "1 row(s) above"),
-            (lambda n: np.random.default_rng(2).permutation(n), "order of the rows"),
-        ],
+        "order", [lambda n: np.roll(np.arange(n), 1), np.random.default_rng(2).permutation]
     )
-    def test_rows_in_another_order_are_named(self, order: Any, words: str) -> None:
+    def test_rows_in_another_order_are_named(self, order: Any) -> None:
         table = right_table()
         places = order(len(TEXTS))
         table |= {name: table[name][places] for name in VELOCITIES}
         (cause,) = impact88.compare(table).causes
-        assert words in cause.edit
+        assert "order of the rows" in cause.edit
 
     def test_cut_digits_are_named(self) -> None:
         table: dict[str, Any] = right_table()
@@ -184,7 +180,7 @@ class TestTables:
         table["VAX"][3] = None
         comparison = impact88.compare(table)
         assert not comparison.passed
-        assert comparison.notes == ("rows that lack a result where there is one: 1",)
+        assert comparison.notes[0] == "rows that lack a result where there is one: 1"
 
 
 class TestMutants:

@@ -15,8 +15,13 @@ import pytest
 
 import impact88
 from impact88.apple import captured
+from impact88.cases.units import View
 from impact88.comparison import kit, oracle, selfcheck, words
+from impact88.comparison.agreement import COMPARED
 from impact88.comparison.spellings import VELOCITIES
+from impact88.tables.solving import solve_table
+
+US_ROW = ".1,.5,-.8,7,4,-30,-20,-40,0,60,4600,3100,3700,2000,-20,0,0,10,17,0,6"
 
 
 def in_thousandths(text: str) -> str:
@@ -59,8 +64,8 @@ class TestKit:
             (kit.PARTIAL, lambda row, _: {**row, "WBF": ""}),
             (kit.COARSE, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "1.5")}),
             (kit.COARSE, lambda row, _: {**row, **{n: in_thousandths(row[n]) for n in VELOCITIES}}),
-            (kit.COPIED, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "1.23456")}),
-            (kit.COPIED, lambda row, rows: {**row, **{n: rows[6][n] for n in VELOCITIES}}),
+            (kit.DISAGREES, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "1.23456")}),
+            (kit.DISAGREES, lambda row, rows: {**row, **{n: rows[6][n] for n in VELOCITIES}}),
             (kit.SURPLUS, lambda row, _: {**row, **dict.fromkeys(VELOCITIES, "0")}),
             (kit.CHANGED, lambda row, _: {**row, "E": "0.123"}),
             (kit.MISSING, lambda row, _: {**row, "id": "1988"}),
@@ -141,12 +146,14 @@ class TestTables:
     @pytest.mark.parametrize(
         ("name", "text", "words_in_message"),
         [
-            ("a.csv", "MA,VAX\n1\n", "row 1"),
-            ("a.csv", "MA,MA\n1,2\n", "two columns"),
+            ("a.csv", "MA,VAX\n1\n", "line 2"),
+            ("a.csv", "MA,MA\n1,2\n", "twice"),
+            ("a.csv", "MA,ma\n1,2\n", "two columns of MA"),
             ("a.csv", "MA,VAX\n1,2\n", "missing"),
             ("a.csv", "MA\n", "no rows"),
-            ("a.jsonl", "{}\n", "expected a name ending in .csv"),
-            ("a.txt", "", "expected a name ending"),
+            ("a.csv", "MA,VAX [kg]\n1,2\n", "kg is not a unit of length/time"),
+            ("a.csv", "MA,VAX [mph]\n1,2\n", "MA has none"),
+            ("a.md", "", "expected a name that ends"),
             ("a.csv", 'M,MA,VAX\n6,"1,810",2\n', "row 1: MA = '1,810' is not a number"),
         ],
     )
@@ -165,9 +172,81 @@ class TestTables:
         assert all(impact88.compare(table).passed for table in tables)
         assert impact88.compare({"VAX": ["-13.263"]}, values=scene).passed
 
-    def test_results_of_the_table_are_needed(self) -> None:
+    @pytest.mark.parametrize("digit", ["3", "4"])
+    @pytest.mark.parametrize("heading", ["VAX", "vax", "Vax [ft/s]", "VAX[FT/S]"])
+    def test_headings_are_read_as_solve_reads_them(self, heading: str, digit: str) -> None:
+        row = {**impact88.sample(1), heading: f"-13.26{digit}"}
+        comparison = impact88.compare(row, units="chapter", causes=False)
+        assert comparison.passed == (digit == "3")
+        assert comparison.results == ("VAX",)
+
+    @pytest.mark.parametrize(("number", "passed"), [("-9.0427", True), ("-9.0437", False)])
+    def test_a_heading_with_a_unit_converts_its_column(self, number: str, passed: bool) -> None:
+        row = {**impact88.sample(1), "VAX [mph]": number}
+        comparison = impact88.compare(row, units="chapter", causes=False)
+        assert comparison.passed == passed
+        assert [item.theirs for item in comparison.disagreements] == [number] * (not passed)
+        if not passed:
+            assert comparison.disagreements[0].ours == pytest.approx(-9.04272, abs=1e-5)
+
+    def test_what_solve_writes_passes_and_is_compared(self, tmp_path: Path) -> None:
+        (tmp_path / "a.csv").write_text(f"{','.join(impact88.names.SCENE)}\n{US_ROW}\n")
+        for name in ("b.csv", "b.jsonl"):
+            solve_table(str(tmp_path / "a.csv"), str(tmp_path / name), view=View("us"))
+            comparison = impact88.compare(tmp_path / name, units="us")
+            assert comparison.passed
+            assert comparison.results == COMPARED
+            assert comparison.notes == ("columns not compared: COND STATUS",)
+
+    def test_columns_that_are_not_compared_are_named(self) -> None:
+        row = {**impact88.sample(1), "VAX": "-13.263"}
+        assert impact88.compare({**row, "id": 1}).notes == ()
+        comparison = impact88.compare({**row, "VAXX": 1, "VAX1 [mph]": 2})
+        assert comparison.notes == ("columns not compared: VAXX VAX1 [mph]",)
+        assert "results compared: VAX\n" in str(comparison)
+
+    @pytest.mark.parametrize("column", [{}, {"VAXX": 1}, {"STATUS": 0}])
+    def test_results_of_the_table_are_needed(self, column: Any) -> None:
         with pytest.raises(impact88.UserError, match="no results"):
-            impact88.compare(dict(impact88.sample(1)))
+            impact88.compare({**impact88.sample(1), **column})
+
+    def test_a_value_that_the_table_has_is_not_set(self) -> None:
+        scene = dict(impact88.sample(1))
+        row = {**scene, "VAX": "-13.263"}
+        for name in ("MU", "M"):
+            with pytest.raises(impact88.UserError, match=f"{name} is set, and in the table"):
+                impact88.compare({**row, "M": 6}, values={name: scene.get(name, "6")})
+        friction = row.pop("MU")
+        assert impact88.compare(row, values={"MU": friction}).passed
+        assert not impact88.compare(row, values={"MU": ".5"}, causes=False).passed
+        with pytest.raises(impact88.UserError, match="MU is set"):
+            impact88.compare(row, values={"MU": ".5"}, kit=kit.FROZEN_ID)
+
+    def test_values_are_in_the_units_of_the_headings(self) -> None:
+        row = {**impact88.sample(1), "VAX": "-13.263"}
+        mass = float(row.pop("MA")) * 32.17404856
+        for values in ({"MA": f"{mass} lb"}, {"MA": "143.5 slug"}):
+            assert impact88.compare(row, values=values, units="chapter").passed
+        assert not impact88.compare(row, values={"MA": mass}, units="chapter", causes=False).passed
+
+    def test_semicolons_and_decimal_commas_are_read(self, tmp_path: Path) -> None:
+        row = {**impact88.sample(1), "VAX": "-13.263"}
+        text = "\n".join(";".join(cells) for cells in (row, row.values())).replace(".", ",")
+        (tmp_path / "a.csv").write_text(text)
+        assert impact88.compare(tmp_path / "a.csv").passed
+        (tmp_path / "a.csv").write_text(text.replace("-13,263", "-13,264"))
+        assert not impact88.compare(tmp_path / "a.csv", causes=False).passed
+
+    @pytest.mark.parametrize("cell", ["", "n/a", "-13,263"])
+    def test_the_first_missing_result_is_named(self, cell: str) -> None:
+        row = {**impact88.sample(1), "VAX": "-13.263", "LOSS": "57.47"}
+        comparison = impact88.compare([row, {**row, "VAX": cell}, {**row, "VAX": ""}])
+        assert comparison.notes == (
+            "rows that lack a result where there is one: 2",
+            f"the first of them is row 2: VAX = {cell!r}; expected a number",
+        )
+        assert not comparison.passed
+        assert not impact88.compare([row, row]).notes
 
     def test_a_comparison_is_text_and_json(self) -> None:
         comparison = impact88.compare({**impact88.sample(1), "VAX": "-13.2", "KI": "1"})

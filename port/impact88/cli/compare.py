@@ -4,17 +4,17 @@ impact88 compare theirs.csv --units us           in mph, lb and ft
 impact88 compare --kit 1988.1 theirs.csv --junit results.xml
 impact88 compare theirs.csv --json -o comparison.json
 
-The table (CSV; - is standard input) has the columns of a scene and the results of the
-other program, by the listing's names. A result agrees if it lies within what rounding allows in its
-row. Where results disagree, edits of the reference are tried; the one that reproduces them is the
-likely mistake. With --kit the table holds answers to the vectors of `impact88 oracle --kit`.
+The table (as for `solve`; - is CSV on standard input) has the columns of a scene and the results
+of the other program, with headings such as VAX or VAX [mph]. A result agrees if it lies within what
+rounding allows in its row. Where results disagree, edits of the reference are tried; the one that
+reproduces them is the likely mistake. With --kit the table holds answers to the vectors of
+`impact88 oracle --kit`.
 
 exit status: 0 every result agrees; 1 something disagrees or was not compared; 2 bad input"""
 
 from __future__ import annotations
 
 from ..files import display_name
-from ..names import RESULTS, SCENE
 from . import options
 from .options import flag, option
 from .output import show
@@ -33,20 +33,14 @@ OPTIONS = (
 
 def main(args: options.Args) -> int:
     """Compare a table with the reference."""
-    from ..cases.case import Case
-    from ..cases.units import View
     from ..comparison.compare import compare
     from ..comparison.words import as_json, as_junit, as_text
 
-    view = View.of(units=args.units)
-    changes = options.changes_of(args)
-    numbers = Case.of(changes, "--set", view).numbers
-    names = (*SCENE, *RESULTS) if args.units else ()
     comparison = compare(
         args.theirs,
         kit=args.kit,
-        values={name: numbers[name] for name in changes},
-        factors={name: float(view.map(name)[0]) for name in names if name != "STATUS"},
+        values=options.changes_of(args),
+        units=args.units,
         causes=not args.no_causes,
     )
     if args.junit:

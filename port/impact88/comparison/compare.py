@@ -6,12 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from ..cases.case import Case
+from ..cases.units import View
 from ..errors import UserError
+from ..names import SCENE
+from ..tables.solving import read_headings
 from .agreement import COMPARED, Bools
 from .conditions import find_condition, quantities_of
 from .evaluation import Floats
 from .grading import Table
-from .kit import Answers, check_kit
+from .kit import HEAD, REMARKS, Answers, check_kit
 from .mistakes import MAX_SAMPLE, columns_of, find_causes
 from .numbers import spread
 from .reading import read_table, scene_columns
@@ -26,7 +30,7 @@ def compare(
     *,
     kit: str | None = None,
     values: Mapping[str, Any] | None = None,
-    factors: Mapping[str, float] | None = None,
+    units: str = "",
     causes: bool = True,
 ) -> Comparison:
     """Compare another program's results with the reference, and name the mistake.
@@ -34,15 +38,15 @@ def compare(
     Parameters
     ----------
     table : path, mapping of columns, data frame or sequence of mappings
-        The scenes and the results, by `impact88.names`; a file ends in ``.csv``.
-        Texts are judged by the digits that they are written with.
+        The scenes and the results, with headings such as ``VAX`` or ``VAX [mph]`` and in files as
+        `impact88 solve` reads them. Texts are judged by the digits that they are written with.
     kit : str, optional
         The id of the kit of test vectors that the table answers, 1988.1. The scenes are the kit's,
         and every vector must be answered.
-    values : mapping of str to float, optional
+    values : mapping of str to float or str, optional
         Values of columns of the scene that the table lacks.
-    factors : mapping of str to float, optional
-        What converts a column to consistent units (length, mass, time): ``{"VAX": 22 / 15}``.
+    units : {"", "us", "chapter", "metric", "si"}, default ""
+        Units of columns and values that name none; "" for any consistent units.
     causes : bool, default True
         Look for the mistakes where rows disagree.
 
@@ -54,7 +58,7 @@ def compare(
     Raises
     ------
     UserError
-        For a table that cannot be used.
+        For a table that cannot be used, and without a column of results.
 
     Notes
     -----
@@ -69,19 +73,37 @@ def compare(
     (True, 0)
     """
     columns = read_table(table)
-    factors = factors or {}
+    values = values or {}
+    view = View.of(units=units or ("chapter" if kit else ""))
+    measured = (*SCENE, *COMPARED)
+    headings, view = read_headings([*columns], Case.of(values, "--set", view).view, measured)
+    case = Case.of(values, "--set", view, is_inferred=view.units != units)
+    names = {heading: name for name, (heading, _) in headings.items()}
+    factors = {name: float(view.map(name, unit)[0]) for name, (_, unit) in headings.items()}
+    columns = {names.get(heading, heading): column for heading, column in columns.items()}
+    others = [name for name in columns if name not in (*measured, *HEAD, *REMARKS)]
+    for name in case.numbers:
+        if name in (SCENE if kit else columns) and (name != "M" or "M" in case.written):
+            raise UserError(f"{name} is set, and in the table or kit, too; expected one of the two")
     if kit is not None:
         check_kit(kit)
         answers = Answers(columns)
         comparison, wrong = compare_columns(answers.scene, answers.results, factors, causes)
         verdict = answers.verdict(wrong)
         passed = not (verdict["failed"] or verdict["stray"])
-        return replace(comparison, passed=passed, kit=verdict)
-    scene = scene_columns(columns, values or {})
-    scene = {name: column * factors.get(name, 1.0) for name, column in scene.items()}
-    if not any(name in columns for name in COMPARED):
-        raise UserError(f"no results to compare; expected some of {' '.join(COMPARED)}")
-    return compare_columns(scene, columns, factors, causes)[0]
+        comparison = replace(comparison, passed=passed, kit=verdict)
+    elif not any(name in columns for name in COMPARED):
+        raise UserError(
+            f"no results to compare, only {' '.join(others) or 'the scene'}; expected headings "
+            f"such as {' '.join(COMPARED)}"
+        )
+    else:
+        scene = scene_columns(columns, factors, case.numbers)
+        comparison, _ = compare_columns(scene, columns, factors, causes)
+    if others:
+        note = f"columns not compared: {' '.join(others)}"
+        comparison = replace(comparison, notes=(*comparison.notes, note))
+    return comparison
 
 
 def compare_columns(
@@ -99,6 +121,7 @@ def compare_columns(
         rows=table.size,
         agreeing=int(table.agreeing.sum()),
         differing=int(places.size),
+        results=tuple(name for name in table.names if name not in table.empty),
         notes=table.notes(),
         differing_rows=tuple((places[:MAX_ROWS_LISTED] + 1).tolist()),
     )

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import quoted
 from .agreement import COMPARED, LOST_DIGITS, Bools, elimination_bounds, reference
 from .evaluation import Floats
 from .numbers import numbers, units
@@ -122,14 +123,19 @@ class Table:
 
     def notes(self) -> tuple[str, ...]:
         """Return what was not compared, and digits that are lost, in words."""
-        notes = [f"{name} is empty in every row" for name in self.empty]
+        notes = [f"{name} has no number in any row" for name in self.empty]
         counts = {
             "agree, but lose digits to rounding": self.lost & ~self.wrong,
             "leave no digit to compare: the equations are too nearly singular": self.unstable,
-            "lack a result where there is one": self.missing & (not self.empty),
+            "lack a result where there is one": self.missing,
             "have a number where the equations have no answer": self.surplus,
         }
         for says, rows in counts.items():
             if rows.any():
                 notes.append(f"rows that {says}: {int(rows.sum())}")
+        if self.missing.any():
+            row = int(self.missing.argmax())
+            name = next(n for n in self.names if not np.isfinite(self.theirs[n][row]))
+            cell = quoted(str(self.columns[name][row]))
+            notes.append(f"the first of them is row {row + 1}: {name} = {cell}; expected a number")
         return tuple(notes)

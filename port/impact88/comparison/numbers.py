@@ -32,8 +32,6 @@ def number(text: Any) -> float:
 def numbers(column: Any) -> Floats:
     """Return a column of texts or numbers as doubles; NaN where a cell has none."""
     array = np.asarray(column)
-    if array.dtype.kind in "fiu":
-        return array.astype(np.float64)
     try:
         return array.astype(np.float64)
     except (TypeError, ValueError):

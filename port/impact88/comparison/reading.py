@@ -1,10 +1,8 @@
-"""Other programs' tables: CSV, and what Python programs have in memory.
+"""Other programs' tables: files as `tables` reads them, and what Python programs have in memory.
 
 Cells stay as they are written, because their digits count.
 """
 
-import csv
-import io
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import UserError, quoted
-from ..files import read_text
-from ..names import DEFAULT_M, missing
+from ..names import missing
+from ..tables import engine as tables
 from .evaluation import Floats
 from .numbers import EMPTY, numbers
 from .spellings import COLUMNS
@@ -29,7 +27,7 @@ def read_table(table: Any) -> Columns:
     Parameters
     ----------
     table : path, mapping of columns, data frame or sequence of mappings
-        A CSV file, "-" (CSV on standard input), or the table itself.
+        A file, "-" (CSV on standard input), or the table itself.
 
     Returns
     -------
@@ -42,11 +40,10 @@ def read_table(table: Any) -> Columns:
         For a table that cannot be read.
     """
     if isinstance(table, str | os.PathLike):
-        columns = _read_csv(os.fspath(table))
-    elif isinstance(table, Mapping):
-        columns = {str(name): np.atleast_1d(np.asarray(c)) for name, c in table.items()}
-    elif hasattr(table, "columns"):
-        columns = {str(name): np.asarray(table[name]) for name in table.columns}
+        columns = _read_file(os.fspath(table))
+    elif isinstance(table, Mapping) or hasattr(table, "columns"):
+        names = getattr(table, "columns", table)
+        columns = {str(name): np.atleast_1d(np.asarray(table[name])) for name in names}
     elif isinstance(table, Sequence):
         columns = _columns_of(table)
     else:
@@ -62,23 +59,12 @@ def read_table(table: Any) -> Columns:
     return columns
 
 
-def _read_csv(path: str) -> Columns:
-    if not (path == "-" or path.lower().endswith(".csv")):
-        raise UserError("is not a table; expected a name ending in .csv", path)
-    text = read_text(path).removeprefix("\ufeff")
-    try:
-        header, *rows = [row for row in csv.reader(io.StringIO(text)) if row] or [[]]
-    except csv.Error as error:
-        raise UserError(f"cannot be read: {error}", path) from None
-    names = [name.strip() for name in header]
-    for name in names:
-        if names.count(name) > 1:
-            raise UserError(f"has two columns {quoted(name)}", path)
-    for place, row in enumerate(rows, 1):
-        if len(row) != len(names):
-            message = f"has {len(row)} cells; expected {len(names)}, as the headings have"
-            raise UserError(message, f"{path}, row {place}")
-    return {name: np.array([row[k] for row in rows]) for k, name in enumerate(names)}
+def _read_file(path: str) -> Columns:
+    blocks = [block.columns for block in tables.read_table(path, digits=True).blocks]
+    return {
+        name: np.concatenate([np.asarray(block[name]) for block in blocks])
+        for name in (blocks[0] if blocks else ())
+    }
 
 
 def _columns_of(rows: Sequence[Any]) -> Columns:
@@ -87,19 +73,22 @@ def _columns_of(rows: Sequence[Any]) -> Columns:
         if not isinstance(row, Mapping):
             raise UserError(f"row {place} of the table is no mapping of names to numbers")
     names = list(dict.fromkeys(name for row in rows for name in row))
-    cells = {name: [row.get(name, "") for row in rows] for name in names}
-    return {name: np.array(["" if x is None else str(x) for x in c]) for name, c in cells.items()}
+    return {name: np.array([str(row.get(name, "")) for row in rows]) for name in names}
 
 
-def scene_columns(columns: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Floats]:
-    """Return the 21 columns of the scene as numbers.
+def scene_columns(
+    columns: Mapping[str, Any], factors: Mapping[str, float], values: Mapping[str, float]
+) -> dict[str, Floats]:
+    """Return the 21 columns of the scene in base units.
 
     Parameters
     ----------
     columns : mapping
         A table's columns.
+    factors : mapping
+        What converts each column to base units.
     values : mapping
-        Values of columns that the table lacks.
+        Values of columns that the table lacks, in base units.
 
     Raises
     ------
@@ -114,8 +103,9 @@ def scene_columns(columns: Mapping[str, Any], values: Mapping[str, Any]) -> dict
             for row in np.flatnonzero(np.isnan(scene[name])):
                 if str(cell := columns[name][row]).strip().lower() not in EMPTY:
                     raise UserError(f"{name} = {quoted(cell)} is not a number", f"row {row + 1}")
-        elif name in values or name == "M":
-            scene[name] = np.full(size, float(values.get(name, DEFAULT_M)))
+            scene[name] *= factors[name]
+        elif name in values:
+            scene[name] = np.full(size, values[name])
         elif name in BODY_COLUMNS and (scene["M"] == 4.0).all():
             scene[name] = np.full(size, 1.0 if name in ("IA", "IB") else 0.0)
     if absent := [name for name in COLUMNS if name not in scene]:

@@ -84,6 +84,8 @@ class Comparison:
         True if every result was compared and none disagrees; of a kit, if every vector passes.
     rows, agreeing, differing : int
         Rows of the table, those that agree and those that do not.
+    results : tuple of str
+        The results compared.
     causes : tuple of Cause
         Mistakes that explain the rows that disagree.
     disagreements : tuple of Disagreement
@@ -106,6 +108,7 @@ class Comparison:
     rows: int
     agreeing: int
     differing: int
+    results: tuple[str, ...] = ()
     causes: tuple[Cause, ...] = ()
     disagreements: tuple[Disagreement, ...] = ()
     notes: tuple[str, ...] = ()

@@ -35,7 +35,7 @@ def as_text(comparison: "Comparison") -> str:
         f"{verdict}: rows {comparison.rows}, agreeing {comparison.agreeing}, "
         f"disagreeing {comparison.differing}, without numbers to compare {silent}"
     ]
-    lines += comparison.notes
+    lines += [f"results compared: {' '.join(comparison.results)}", *comparison.notes]
     if comparison.differing:
         lines += ["", "Likely cause" if comparison.causes else "No cause was found."]
         for cause in comparison.causes:

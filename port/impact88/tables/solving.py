@@ -173,8 +173,7 @@ class Solver:
         check_names(self.results, allowed, f"result of --arithmetic {arithmetic}", "--outputs")
         case = case or Case.of({}, view=view)
         try:
-            headings = _headings_by_name(table.names)
-            self.view = _view(headings, case.view)
+            headings, self.view = read_headings(table.names, case.view)
         except UserError as error:
             raise UserError(str(error), table.where) from None
         if self.view != case.view:
@@ -409,31 +408,31 @@ def _double(cell: Any) -> float:
         return math.nan
 
 
-def _headings_by_name(names: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Return heading and symbol of the unit by quantity. Raises UserError for two columns of one
-    quantity, and for a unit that does not measure it."""
+def read_headings(
+    names: Sequence[str], view: View, measured: Collection[str] = SCENE
+) -> tuple[dict[str, tuple[str, str]], View]:
+    """Return heading and symbol of the unit by quantity, and the view of the table: the one given,
+    else with the system that the units of ``measured`` quantities name.
+
+    Raises UserError for two columns of one quantity, for a unit that does not measure it, and where
+    only some headings have units."""
     headings: dict[str, tuple[str, str]] = {}
+    units = {}
     for heading in names:
         name, unit = heading_name(heading)
         if name in headings:
             raise UserError(f"{headings[name][0]} and {heading} are two columns of {name}")
         if name:
-            symbol = unit_of(quantity(name).unit, unit).symbol if unit and name in SCENE else ""
+            rule = quantity(name).unit
+            symbol = unit_of(rule, unit).symbol if unit and name in measured else ""
             headings[name] = heading, symbol
-    return headings
-
-
-def _view(headings: Mapping[str, tuple[str, str]], view: View) -> View:
-    """Return the view of a table: the one given, else with the system that its headings' units
-    name. Raises UserError where only some headings have units."""
-    if view.units:
-        return view
-    units = {n: u for n, (_, u) in headings.items() if n in SCENE and SCENE[n].unit in DIMENSIONS}
-    system = system_using([(SCENE[n].unit, unit) for n, unit in units.items() if unit])
-    bare = [name for name, unit in units.items() if not unit]
-    if system and bare:
+            if name in measured and rule in DIMENSIONS:
+                units[name] = rule, symbol
+    system = view.units or system_using([pair for pair in units.values() if pair[1]])
+    bare = [name for name, (_, unit) in units.items() if not unit]
+    if system and bare and not view.units:
         raise UserError(
             f"some headings have units, and {bare[0]} has none; expected "
             f"{View(system).heading(bare[0])}, or --units {system} for columns without"
         )
-    return View(system, view.axes, view.headings)
+    return headings, View(system, view.axes, view.headings)
