@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import UserError
 from ..printouts import VERDICTS, Kind, Verdict, Verification, judge
-from ..printouts.page import REPLIES
+from ..printouts.page import REPLIES, RESULTS
 from .cells import BLANK
 from .grid import grid_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages
@@ -215,8 +215,8 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
     A page differs only if the measured cells are those of the same predicted page, each cell that
-    differs belongs to a finding, each number that differs was measured, and no cell of another
-    number is in doubt.
+    differs belongs to a finding, each number that differs was measured, and no cell of an input is
+    in doubt.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
@@ -231,10 +231,11 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
         measured = {cell.name for cell in cells}
         is_odd = not altered_numbers(cells) <= adverse
         is_odd |= any(f.kind is Kind.NUMBER and f.name not in measured for f in result.findings)
-        is_few = len(differing) <= MAX_DIFFERING or bool(result.explanation)
-        return verdict if is_few and not is_odd and not in_doubt else Verdict.INCOMPLETE
+        is_odd |= any(cell.name not in RESULTS for cell in in_doubt)
+        is_odd |= len(differing) > MAX_DIFFERING and not result.explanation
+        return Verdict.INCOMPLETE if is_odd else verdict
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
-        if in_doubt or any(cell.name for cell in differing):
+        if in_doubt or altered_numbers(cells):
             return Verdict.INCOMPLETE
         if doubts or differing or marks:
             return Verdict.AS_READ
