@@ -11,6 +11,7 @@ import pytest
 from drawnscenes import SCENES, Placed, case_of, texts_of
 
 from impact88 import UserError
+from impact88.cases import Case
 from impact88.report.answers import Answer, ask
 from impact88.report.drawing import draw, to_png
 
@@ -83,12 +84,12 @@ def test_north_is_up_in_compass_views() -> None:
     ("changes", "hours"),
     [({}, ("12", "12")), ({"PA": "30", "TA": "-30"}, ("11", "12")), ({"VX": "-60"}, ("6", "6"))],
 )
-def test_the_impulse_has_the_hour_from_which_it_comes(
+def test_each_body_has_the_hour_from_which_it_is_struck(
     changes: dict[str, str], hours: tuple[str, str]
 ) -> None:
     """A frontal blow comes from 12 o'clock; A turned left by 30 degrees is struck from 11."""
     words = notes("head-on", MU="0", **changes)
-    assert re.search(rf" P \d+, {hours[0]} o'clock ", words)
+    assert f"A is drawn as a car; struck from {hours[0]} o'clock" in words
     assert f"B is drawn as a car; struck from {hours[1]} o'clock" in words
 
 
@@ -143,3 +144,21 @@ def test_a_title_is_escaped() -> None:
 def test_a_png_is_rendered() -> None:
     pytest.importorskip("resvg_py")
     assert to_png(drawing(), 300).startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(("departure", "is_drawn"), [("-40", False), ("55", True)])
+def test_an_impossible_impact_is_drawn_with_its_verdict(departure: str, is_drawn: bool) -> None:
+    entries = "M=4 MA=1800 MB=1200 HA=0 HB=-90 SAF=50 SBF=30 HBF=-30 TA=course TB=course".split()
+    changes = dict(entry.split("=") for entry in entries)
+    case = Case.of({**changes, "HAF": departure, "units": "metric", "title": "Elm Street"})
+    texts = [text.text for text in texts_of(draw(ask(case)))]
+    assert texts.count("Elm Street") == 1
+    assert ("NO IMPACT: nearest impact drawn" in texts) is is_drawn
+    assert "t" not in texts  # the contact plane is not known
+
+
+@pytest.mark.parametrize(("speed", "is_drawn"), [("-25", False), ("25", True)])
+def test_a_scene_that_physics_forbids_is_drawn_with_its_verdict(speed: str, is_drawn: bool) -> None:
+    words = notes(UX=speed, VY="0")
+    assert ("NO IMPACT: physics forbids what is drawn" in words) is is_drawn
+    assert " t " in words

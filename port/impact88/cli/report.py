@@ -12,7 +12,6 @@ exit status: 0 written; 1 written, but no impact that physics allows agrees; 2 b
 
 from __future__ import annotations
 
-from ..errors import UserError
 from .options import CASE, TARGET, Args, case_of
 
 OPTIONS = (*CASE, TARGET)
@@ -21,10 +20,8 @@ OPTIONS = (*CASE, TARGET)
 def main(args: Args) -> int:
     """Write a page or a drawing."""
     from ..report.answers import ask
-    from ..report.casepage import ENDINGS, write
+    from ..report.casepage import write
 
-    if not args.target.lower().endswith(ENDINGS):
-        raise UserError(f"expected a name that ends in {', '.join(ENDINGS)}", f"-o {args.target}")
     answer = ask(case_of(args))
     write(answer, args.target)
     return int(not answer.possible)

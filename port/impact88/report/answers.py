@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -33,23 +32,20 @@ from .rounding import decimals_in, round_number
 if TYPE_CHECKING:
     from ..reconstruction.answer import Reconstruction
 
-CHANGES = tuple("DVA PDOFA DVB PDOFB".split())
-AFTER = tuple("SAF HAF SBF HBF".split())
-FORWARD = (*CHANGES, *FINAL_VELOCITIES, *AFTER, "LOSS", "VC", "MUC")
+FORWARD = tuple("DVA PDOFA DVB PDOFB VAX VAY VBX VBY WAF WBF SAF HAF SBF HBF LOSS VC MUC".split())
 """Results of a forward question, the most asked first."""
-BACKWARD = (*"SA HA SB HB".split(), *AFTER, *CHANGES, *"E MUP EM WA WB WAF WBF LOSS".split())
+BACKWARD = tuple(
+    "SA HA SB HB SAF HAF SBF HBF DVA PDOFA DVB PDOFB E MUP EM WA WB WAF WBF LOSS".split()
+)
 """Results of a reconstruction, the most asked first."""
 COMPONENTS = "DVAF DVAR DVBF DVBR P RR0 EL DT CAX CAY CBX CBY".split()
 ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
-UNIT = re.compile("[A-Za-z%°]")
-"""What an entry with a unit has."""
 POINTS = "CAF CAL CBF CBL".split()
 UNUSABLE = (
     "no impact has these values; expected masses and inertias above 0, and at most one barrier "
     "(MB = inf, IB = inf), at rest"
 )
-CLOCKS = ("PDOFA", "PDOFB")
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
 NOISE = 1e-9  # width of an interval over the value: so much is rounding
@@ -184,7 +180,7 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
         if math.isinf(case.numbers["MB"]):  # a barrier
             names = tuple(name for name in names if "B" not in name or name in wanted)
         return _forward(case, names, seed)
-    exact = [name for name, amount in case.entries.items() if not amount.varies]
+    exact = {*case.entries} - {*case.ranges}
     names = tuple(wanted) or (ALL if full else tuple(n for n in BACKWARD if n not in exact))
     return _reconstruct(case, names, seed)
 
@@ -231,11 +227,10 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         for name, bound in sample.outputs.items()
         if bound.upper - bound.lower > NOISE * abs(bound.nominal)
     }
-    fractions: dict[str, dict[str, float]] = {}
-    for name, bound in varying.items():
-        squares = {n: effect * effect for n, (_, effect) in bound.drivers.items()}
-        total = sum(squares.values()) or 1.0
-        fractions[name] = {n: square / total for n, square in squares.items()}
+    squares = {
+        name: {n: effect * effect for n, (_, effect) in bound.drivers.items()}
+        for name, bound in varying.items()
+    }
     warnings = [
         f"in {100 * fraction:.2g} % of the draws {words}"
         for name, fraction in sample.warnings.items()
@@ -246,24 +241,25 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         asked="bounds",
         question=f"{answer.question} with limits of {', '.join(case.ranges)}",
         found=numbers_of(case, values, {name: bound.interval for name, bound in varying.items()}),
-        sections={"depends": _dependences(fractions)},
+        sections={"depends": _dependences(squares)},
         warnings=(*answer.warnings, *warnings),
     )
 
 
-def _dependences(fractions: Mapping[str, Mapping[str, float]]) -> tuple[str, ...]:
+def _dependences(variances: Mapping[str, Mapping[str, float]]) -> tuple[str, ...]:
     """Return which inputs make results uncertain: "DVA DVB: UX 62 %, MU 20 %".
 
     Parameters
     ----------
-    fractions : mapping of str to mapping of str to float
-        Fractions of each result's variance, by input.
+    variances : mapping of str to mapping of str to float
+        Parts of each result's variance, in any unit, by input.
     """
     results: dict[str, list[str]] = {}
-    for result, parts in fractions.items():
-        largest = sorted(parts, key=lambda name: -parts[name])[:MAX_DRIVERS]
-        inputs = [n for n in largest if parts[n] >= MIN_SHARE and [*parts] != [result]]
-        words = ", ".join(f"{name} {100 * parts[name]:.0f} %" for name in inputs)
+    for result, parts in variances.items():
+        total = sum(parts.values()) or 1.0
+        largest = sorted(parts, key=parts.__getitem__, reverse=True)[:MAX_DRIVERS]
+        inputs = [n for n in largest if parts[n] >= MIN_SHARE * total and [*parts] != [result]]
+        words = ", ".join(f"{name} {100 * parts[name] / total:.0f} %" for name in inputs)
         results.setdefault(words, []).append(result)
     return tuple(f"{' '.join(names)}: {words}" for words, names in results.items() if words)
 
@@ -315,7 +311,7 @@ def numbers_of(
             decimals, ends = decimals_in(rule, group, high - low), (low, high)
             interval = f"{round_number(low, decimals)} .. {round_number(high, decimals)}"
         text, meaning = round_number(value, decimals), quantity(name).meaning
-        note = clock(value) if text and name in CLOCKS else ""
+        note = clock(value) if text and "PDOF" in name else ""
         result = value if text else None
         rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, result, ends)
     return rows
@@ -340,7 +336,7 @@ def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
     # random draws do not depend on the file's order
     entries = {name: amount for name, amount in sorted(case.entries.items()) if name != "TF"}
     check_names(entries, KNOWABLE, "value that a reconstruction can use", case.source)
-    duration = case.entries["TF"].value if "TF" in case.entries else None
+    duration = getattr(case.entries.get("TF"), "value", None)
     try:
         impacts = reconstruct(entries, samples=DRAWS, seed=seed, contact_time=duration)
     except UserError as error:

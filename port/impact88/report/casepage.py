@@ -32,25 +32,20 @@ IMPACT = (
     "coefficients of restitution e, of friction μ and of moment restitution e_m (R. M. Brach, "
     "Vehicle Collision Analysis, 1988, Equations 13 to 18), in double precision."
 )
+FORWARD = "The velocities after the impact follow in closed form from those before it."
 METHODS = {
-    "forward": (
-        IMPACT,
-        "The velocities after the impact follow in closed form from those before it.",
-    ),
+    "forward": FORWARD,
     "bounds": (
-        IMPACT,
-        "The velocities after the impact follow in closed form from those before it. Intervals "
-        "hold 90 % of random draws of the inputs within their tolerances.",
+        f"{FORWARD} Intervals hold 90 % of random draws of the inputs within their tolerances."
     ),
     "reconstruct": (
-        IMPACT,
         "The equations hold exactly between the values. What is not given is found by least "
         "squares (Levenberg and Marquardt) from random starts; values known within limits are "
         "adjusted, weighted by their tolerances, and each is tested against the others (Baarda "
-        "1968). Intervals hold 90 % of the draws of a sequential Monte Carlo sampler.",
+        "1968). Intervals hold 90 % of the draws of a sequential Monte Carlo sampler."
     ),
 }
-"""Method of each question, in sentences."""
+"""What follows the equations in the method of each question."""
 NOT_JUDGED = (
     "Motion before and after the impact, crush and injury: nothing of them is computed here, but "
     "for skids written as such (v = √(2 μ g d), level road, one friction).",
@@ -136,8 +131,8 @@ def case_page(answer: Answer) -> str:
         answer=answer,
         drawing=drawing,
         undrawn=undrawn,
-        exact=[n for n, amount in case.entries.items() if not amount.varies and n != "M"],
-        method=METHODS[answer.asked],
+        exact=[n for n in case.entries if n not in (*case.ranges, "M")],
+        method=(IMPACT, METHODS[answer.asked]),
         not_judged=NOT_JUDGED,
         digest=sha256(case.toml().encode()).hexdigest(),
     )
@@ -195,7 +190,7 @@ def write(answer: Answer, path: str) -> None:
     """
     ending = PurePath(path).suffix.lower()
     if ending not in ENDINGS:
-        raise UserError(f"expected a name in {', '.join(ENDINGS)}", path)
+        raise UserError("expected -o FILE.html, FILE.svg or FILE.png")
     if ending == ".html":
         data = case_page(answer).encode()
     else:

@@ -41,7 +41,7 @@ REACH = 150.0  # px from the contact point to the farthest point of a body
 SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of that distance
 FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
 PLANE_REACH = 0.62  # half the contact plane, likewise
-ASIDE = 0.04j  # distance between arrows that start from one center, likewise
+ASIDE = 0.06j  # distance between arrows that start from one center, likewise
 SPIN_TURN = 2.2  # radians of a spin's arc on either side
 TINY = 0.005  # of the largest velocity: a smaller one, or a slower spin, is not drawn
 CORNERS = np.array([0.5 - 0.5j, 0.5 + 0.5j, -0.5 + 0.5j, -0.5 - 0.5j, 0.5 - 0.5j])
@@ -51,30 +51,30 @@ VELOCITIES = {"A": "UX UY VAX VAY".split(), "B": "VX VY VBX VBY".split()}
 SIZES = "SA SB SAF SBF DVA DVB P WA WAF WB WBF PDOFA PDOFB".split()
 """Results beside arrows, and hours."""
 NOTES_WIDTH = 76  # characters a line
-
-
-LEGEND = (
-    "Dashed v and ω: velocities and spins before; V and Ω: after; dotted ΔV: velocity changes. "
-    "P: impulse on A. t: contact plane."
-)
+HEADING_WIDTH = 50  # likewise
+HEADING_SIZE = 14.0  # px
+NEAREST = "NO IMPACT: nearest impact drawn"
+FORBIDDEN = "NO IMPACT: physics forbids what is drawn"
+"""Verdicts on what no impact is: of a reconstruction, and of a complete scene."""
 
 
 class Look(NamedTuple):
-    """Look of one kind of arrow: letter, name of its size, width in px, dashes."""
+    """Look of one kind of arrow: letter, meaning, name of its size, width in px, dashes."""
 
     letter: str
+    meaning: str
     name: str
     width: float
     dashes: str = "none"
 
 
-BEFORE = Look("v", "S{}", 1.6, "5 3")
-AFTER = Look("V", "S{}F", 2.4)
-CHANGE = Look("ΔV", "DV{}", 1.4, "1.5 2.5")
-SPIN_BEFORE = Look("ω", "W{}", 1.6, "5 3")
-SPIN_AFTER = Look("Ω", "W{}F", 2.4)
-IMPULSE = Look("P", "P", 3.0)
-PLANE = Look("t", "", 1.2, "9 3 2 3")
+BEFORE = Look("v", "velocity before, dashed", "S{}", 1.6, "5 3")
+AFTER = Look("V", "velocity after", "S{}F", 2.4)
+CHANGE = Look("ΔV", "velocity change, dotted", "DV{}", 1.4, "1.5 2.5")
+SPIN_BEFORE = Look("ω", "spin before, dashed", "W{}", 1.6, "5 3")
+SPIN_AFTER = Look("Ω", "spin after", "W{}F", 2.4)
+IMPULSE = Look("P", "impulse on A", "P", 3.0)
+PLANE = Look("t", "contact plane", "", 1.2, "9 3 2 3")
 
 
 class Body(NamedTuple):
@@ -173,19 +173,21 @@ class _Scene(Paper):
         # north, which is x of SAE axes, is up
         self.turn = 1j if self.view.axes and self.view.headings else 1 + 0j
         self.labels: list[tuple[Points, str, str]] = []
+        self.legend: dict[Look, str] = {}  # in the order drawn
         for name, body in self.bodies.items():
             self._draw_body(name, body)
         plane = 1j * PLANE_REACH * self.reach * _unit(values["GA"])
-        self._draw_arrow(PLANE, "", plane * np.array([-1, 1]))
+        if "GA" in answer.case.entries:
+            self._draw_arrow(PLANE, "", plane * np.array([-1, 1]))
         self._draw_dot(0j, "")
         first = self.bodies["A"]
         if size := self.sizes.get("P"):
             run = FORCE_REACH * self.reach * values["MA"] / size * (first.after - first.before)
-            self._draw_arrow(IMPULSE, "P", run * np.array([0, 1]), self._hour("A"))
+            self._draw_arrow(IMPULSE, "P", run * np.array([0, 1]))
         for ends, text, key in self.labels:
             start, end = self._at(ends)
             self.label(end, end - start, text, key, 18.0 if text in self.bodies else 12.0)
-        self._draw_legend()
+        self._draw_legend(answer)
 
     def _at(self, points: Points) -> Points:
         """Return points of the plane on paper."""
@@ -217,39 +219,44 @@ class _Scene(Paper):
         """Draw a dot."""
         self.line(self._at(point + arc(0.006 * self.reach)), key, 4.0)
 
-    def _draw_arrow(self, look: Look, key: str, points: Points, note: str = "") -> None:
+    def _draw_arrow(self, look: Look, key: str, points: Points) -> None:
         """Draw an arrow and keep its label: at its tip, of a velocity before at its tail."""
         self.line(self._at(points), key, look.width, look.dashes, head=f"url(#tip{key})")
         letter = look.letter + f"_{key.lower()}" * (key in self.bodies)
-        text = f"{letter} {self.rows[look.name.format(key)].text}" if look.name else letter
+        text, meaning = letter, look.meaning
+        if row := self.rows.get(look.name.format(key)):
+            text += f" {row.text}"
+            meaning += f" [{row.unit or 'consistent units'}]"
+        self.legend[look] = f"{look.letter}: {meaning}."
         ends = points[1::-1] if look is BEFORE else points[-2:]
-        self.labels.append((ends, text + note, key))
+        self.labels.append((ends, text, key))
 
-    def _hour(self, name: str) -> str:
-        """Return from where a body is struck, as ", 11 o'clock"; "" if that is not known."""
-        note = self.rows[f"PDOF{name}"].note if f"PDOF{name}" in self.rows else ""
-        return f", {note}" if note else ""
-
-    def _draw_legend(self) -> None:
-        """Draw scale, legend and notes below the scene."""
+    def _draw_legend(self, answer: Answer) -> None:
+        """Draw title and verdict above the scene; scale, legend and notes below."""
         low, high = self.corners()
+        heading = wrap(printable(answer.case.title), HEADING_WIDTH)
+        if not answer.possible:
+            heading.append(NEAREST if answer.asked == "reconstruct" else FORBIDDEN)
+        for k, line in enumerate(reversed(heading)):
+            self.text(low + BORDER.conjugate() - 20j * k, line, size=HEADING_SIZE)
         corner = complex(low.real, high.imag) + BORDER
-        # the scale has one digit times a power of ten, in the unit shown
-        unit = float(self.view.map("DA")[0])
-        amount = float(f"{self.reach / 4 / unit:.0e}")
-        end = corner + amount * unit * REACH / self.reach
-        self.line(np.array([corner, end]), width=3.0)
-        self.text(end + 8, f"{amount:g} {self.view.unit('DA')}")
-        for k, line in enumerate(wrap(" ".join([LEGEND, *self._notes()]), NOTES_WIDTH), 1):
+        if self.bodies["A"].words != DISC:  # whose size means nothing
+            # the scale has one digit times a power of ten, in the unit shown
+            unit = float(self.view.map("DA")[0])
+            amount = float(f"{self.reach / 4 / unit:.0e}")
+            end = corner + amount * unit * REACH / self.reach
+            self.line(np.array([corner, end]), width=3.0)
+            self.text(end + 8, f"{amount:g} {self.view.unit('DA')}")
+        notes = " ".join([*self.legend.values(), *self._notes()])
+        for k, line in enumerate(wrap(notes, NOTES_WIDTH), 1):
             self.text(corner + 15j * k, line)
 
     def _notes(self) -> Iterator[str]:
         """Yield the notes of the legend."""
-        speed, impulse, spin = (self.view.unit(name) for name in ("SA", "P", "WA"))
-        if speed:
-            yield f"Velocities in {speed}, impulse in {impulse}, spins in {spin}."
         yield "North is up." if self.view.headings else "The x axis points to the right."
-        yield f"Spins are positive {'' if self.view.axes else 'counter'}clockwise."
+        if {SPIN_BEFORE, SPIN_AFTER} & {*self.legend}:
+            yield f"Spins are positive {'' if self.view.axes else 'counter'}clockwise."
         for name, body in self.bodies.items():
-            hour = self._hour(name).replace(",", "; struck from")
+            row = self.rows.get(f"PDOF{name}")
+            hour = f"; struck from {row.note}" if row and row.note else ""
             yield f"{name} is drawn as {body.words}{hour}."

@@ -58,11 +58,11 @@ class Exhibit:
         """Yield the text in pieces: text, look ("" if unmarked) and note."""
         text, (place, end) = self.result.text, self.result.span
         for finding in sorted(self.result.findings, key=lambda finding: finding.start):
-            start, stop = max(finding.start, place), min(finding.stop, end)
-            if finding.start >= place and start <= stop:
-                yield text[place:start], "", ""
+            stop = min(finding.stop, end)
+            if place <= finding.start <= stop:
+                yield text[place : finding.start], "", ""
                 look = LOOKS.get(finding.kind, DOUBT)
-                yield text[start:stop] or "‸", look, words.sentence_of(finding)
+                yield text[finding.start : stop] or "‸", look, words.sentence_of(finding)
                 place = stop
         yield text[place:end], "", ""
 

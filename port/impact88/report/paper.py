@@ -25,6 +25,7 @@ SINGLE_EXTRA = 0.15  # of the size of type: a single letter may be so much wider
 REACHES = (3.0, 8.0, 14.0, 22.0, 32.0, 45.0, 60.0, 80.0, 100.0)  # px from a text to its point
 TURNS = np.radians([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])
 """Places of a text around its point, from the direction it should have."""
+GAP = 3.0  # px around a label
 TEXT_COST = 1000.0  # points of lines that are as bad to cover as a point of another text
 BORDER = 8 + 8j  # px around everything
 SUBSCRIPT = re.compile(r"^(Δ?\w)_(\w)(.*)")
@@ -98,7 +99,7 @@ class Paper:
 
         def cost(center: complex) -> float:
             gaps = self.ink - center
-            is_near = (abs(gaps.real) < half.real + 1) & (abs(gaps.imag) < half.imag + 1)
+            is_near = (abs(gaps.real) < half.real + GAP) & (abs(gaps.imag) < half.imag + GAP)
             return float(self.costs[is_near].sum())
 
         rays = np.exp(1j * (cmath.phase(ahead) + TURNS))
