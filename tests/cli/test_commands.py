@@ -42,8 +42,8 @@ STATUSES = """
 0 solve rear.toml
 1 solve impossible.toml
 1 solve --sample 1 --set UX=29.04
-0 solve --sample 1 --sweep MU=0:1:3 --outputs DVA
-1 solve cases.csv --scene crash.toml --outputs DVA
+0 solve --sample 1 --sweep MU=0:1:3 --results DVA
+1 solve cases.csv --scene crash.toml --results DVA
 0 scene
 0 scene rear-end --units metric
 0 scene crash.toml --set MU=.7
@@ -113,7 +113,8 @@ def test_json_has_a_version(line: str, folder: Path) -> None:
     ("line", "hint"),
     [
         ("run --sampel 1", "did you mean --sample?"),
-        ("solve crash.toml --outptus=DVA", "did you mean --outputs?"),
+        ("solve crash.toml --reslts=DVA", "did you mean --results?"),
+        ("solve crash.toml --outputs DVA", "did you mean --results?"),
         ("verify printout.txt --breif", "did you mean --brief?"),
         ("verify printout.txt --xyz", "unrecognized arguments: --xyz (see impact88 help verify)"),
     ],
@@ -164,7 +165,7 @@ def test_set_is_editing_the_file(folder: Path) -> None:
 
 
 def test_bad_rows_are_named_and_the_others_solved(folder: Path) -> None:
-    words = "solve cases.csv --scene crash.toml --outputs DVA -o out.csv"
+    words = "solve cases.csv --scene crash.toml --results DVA -o out.csv"
     outcome = command(*words.split(), folder=folder)
     assert outcome.status == 1
     rows = (folder / "out.csv").read_text().splitlines()

@@ -71,7 +71,7 @@ solve huge.toml
 solve long.toml
 solve reversed.toml
 solve control.toml
-solve --sample 1 --outputs NOTHING
+solve --sample 1 --results NOTHING
 solve --sample 1 --set MA=-5
 solve --sample 1 --set M=5
 solve --sample 1 --sweep MU=0:1

@@ -120,7 +120,8 @@ def _run(name: str, words: Sequence[str]) -> int:
     args, unknown = parser.parse_known_args(words)
     if unknown:
         options = [option for names, _ in module.OPTIONS for option in names]
-        hint = did_you_mean(unknown[0].partition("=")[0], options)
+        word = unknown[0].partition("=")[0].replace("--outputs", "--results")  # its name in 0.3
+        hint = did_you_mean(word, options)
         parser.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     check_files(args)
     with printing_to(getattr(args, "output", None) or "-"):

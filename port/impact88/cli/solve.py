@@ -2,7 +2,7 @@
 impact88 solve crash.toml --set MU="+- .1"    a value changed, or known within limits
 impact88 solve crash.toml --full              every result
 impact88 solve cases.csv -o results.csv       each row of a table
-impact88 solve crash.toml --sweep MU=0:1:51 --outputs DVA,LOSS
+impact88 solve crash.toml --sweep MU=0:1:51 --results DVA,LOSS
 impact88 solve cases.xlsx -o results.parquet --scene common.toml
 
 FILE.toml: a complete scene is solved forward, with 90 % intervals where it has tolerances; from
@@ -44,7 +44,7 @@ TABLES = (".csv", ".tsv", ".jsonl", ".ndjson", ".parquet", ".xlsx")
 """Endings of files that take a table."""
 OPTIONS = (
     *CASE,
-    texts("--outputs", "NAMES", "the results wanted: A,B,..."),
+    texts("--results", "NAMES", "the results wanted: A,B,..."),
     flag("--full", "every result of FILE.toml"),
     JSON,
     TARGET,
@@ -65,7 +65,7 @@ def main(args: Args) -> int:
     from ..report.answers import ALL, ask
     from .answers import show_answer
 
-    names = names_of(args.outputs, ALL, "--outputs")
+    names = names_of(args.results, ALL, "--results")
     answer = ask(case_of(args), names, full=args.full)
     with printing_to(args.target):
         return show_answer(answer, args.json)
@@ -90,7 +90,7 @@ def _solve_table(args: Args, is_table: bool) -> int:
         results = solve_table(
             table if is_table else sweep_table(case, ranges),
             args.target,
-            names_of(args.outputs, RESULTS, "--outputs"),
+            names_of(args.results, RESULTS, "--results"),
             case=case,
             replaced=[*changes_of(args)] if is_table else (),
             view=view,

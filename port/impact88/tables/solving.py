@@ -170,7 +170,7 @@ class Solver:
         self.is_applesoft = arithmetic == "applesoft"
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         self.results = tuple(results) or allowed
-        check_names(self.results, allowed, f"result of --arithmetic {arithmetic}", "--outputs")
+        check_names(self.results, allowed, f"result of --arithmetic {arithmetic}", "--results")
         case = case or Case.of({}, view=view)
         try:
             headings, self.view = read_headings(table.names, case.view)
