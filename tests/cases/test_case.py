@@ -42,6 +42,8 @@ def refusal(text: str) -> str:
         ("CAF = 3\nCAL = 4\nPA = 3", "expected CAF and CAL, or DA and PA in their place"),
         ('UXX_source = "EDR"', "'UXX' is not an entry of a scene; did you mean UX?"),
         ("SAF = -30", "SAF = '-30': a speed is not negative; expected HAF turned by 180"),
+        ("SB = '0 +- 1'", "SB = '0 +- 1': a speed is not negative; expected 0 .. 1"),
+        ("SB = '1 +- 1.01'", "a speed is not negative; expected 0 .. 2.01"),
         ('SA = "skid 60 ft"', "expected distance, unit and friction, such as skid 60 ft at 0.7"),
         ('IA = "estimate"', "IA = estimate needs MA"),
         ('MA = 9\nLA = 15\nIA = "estimate"', "expected IA, or LA and BA"),
@@ -202,3 +204,8 @@ def test_files_are_written_back() -> None:
     text = 'title = "a \\"b\\" \\\\ c"\nunits = "us"\nUX = "30 +- 2"\nUX_source = "EDR"\nSA = 31'
     case = Case.loads(text)
     assert Case.loads(case.toml()) == case
+
+
+@pytest.mark.parametrize("text", ["1 +- 1", "0 .. 1", "normal 0 1"])
+def test_a_speed_may_reach_down_to_rest(text: str) -> None:
+    assert Case.loads(f'SB = "{text}"').entries["SB"].value >= 0

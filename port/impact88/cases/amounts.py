@@ -264,8 +264,10 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
         raise UserError(f"{entry} is beyond the range of doubles") from None
     except ValueError:
         raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
-    if name in SKIDDING and amount.value < 0:
-        raise UserError(f"{entry}: a speed is not negative; expected H{name[1:]} turned by 180")
+    if name in SKIDDING and amount.limits(0.0)[0] < 0:
+        highest = f"{view.shown(name, amount.high):g} {view.unit(name)}".rstrip()
+        expected = f"0 .. {highest}" if amount.value >= 0 else f"H{name[1:]} turned by 180"
+        raise UserError(f"{entry}: a speed is not negative; expected {expected}")
     return amount
 
 

@@ -25,8 +25,10 @@ from .units import DIMENSIONS, PLAIN, View, system_using
 
 COURSE = "course"
 LOCKED = "locked"
-POINT_DEFAULTS = dict.fromkeys("DA DB PA PB TA TB EM GA E MU WA WB".split(), "0")
-POINT_DEFAULTS |= {"IA": "1", "IB": "1"}  # line 480 divides by the inertias, of points, too
+POINT_DEFAULTS = dict.fromkeys("DA DB PA PB TA TB EM GA E MU WA WB".split(), "0") | {
+    "IA": "1",  # line 480 divides by the inertias, of points, too
+    "IB": "1",
+}
 """Inputs that a scene of point masses need not have, and what is typed in their place."""
 
 

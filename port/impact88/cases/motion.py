@@ -68,8 +68,9 @@ def courses(entries: Mapping[str, Amount]) -> dict[str, float]:
         motion, (x, _, course) = velocity(entries, speed), VECTORS[speed]
         if motion:
             is_typed = course in entries and x not in entries
-            angle = entries[course].value if is_typed else math.degrees(cmath.phase(motion))
-            result[speed[1]] = angle
+            result[speed[1]] = (
+                entries[course].value if is_typed else math.degrees(cmath.phase(motion))
+            )
     return result
 
 

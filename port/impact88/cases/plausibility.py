@@ -59,7 +59,7 @@ def implausible(
         if rule in LIMITS and (rule != LENGTH or name in ("DA", "DB")):
             low, high, words = LIMITS[rule]
             size = abs(value) * float(view.base_size(rule))
-            is_off = ((size > 0) & (size < low)) | ((size > high) & (size < inf))
+            is_off = (size < low) | ((size > high) & (size < inf))
             yield Remark(name, is_off & ((rule != LENGTH) | has_size), words)
     for vehicle in "AB":
         mass, inertia, heading = (values.get(f"{kind}{vehicle}") for kind in "MIT")

@@ -46,10 +46,10 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
         For text that is not TOML and for values that are neither numbers nor texts.
     """
     lines = text.split("\n")
-    longest = max(range(len(lines)), key=lambda at: len(lines[at]))
-    if len(lines[longest]) > MAX_LINE:
-        place = f"{source}, line {longest + 1}"
-        raise UserError(f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE", place)
+    for number, line in enumerate(lines, 1):
+        if len(line) > MAX_LINE:
+            fault = f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE"
+            raise UserError(fault, f"{source}, line {number}")
     try:
         values = tomllib.loads(text, parse_float=str)
     except tomllib.TOMLDecodeError as error:

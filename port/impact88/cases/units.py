@@ -151,10 +151,25 @@ class System(NamedTuple):
 
 
 _BOTH = {TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
-_FEET = {LENGTH: "ft", INERTIA: "lb-ft-s2", ENERGY: "ft-lb", FORCE: "lb", IMPULSE: "lb-s"}
-_FEET |= {TURNING: "ft-lb-s", **_BOTH}
-_METERS = {LENGTH: "m", INERTIA: "kg-m2", ENERGY: "J", FORCE: "N", IMPULSE: "N-s"}
-_METERS |= {TURNING: "N-m-s", MASS: "kg", **_BOTH}
+_FEET = {
+    LENGTH: "ft",
+    INERTIA: "lb-ft-s2",
+    ENERGY: "ft-lb",
+    FORCE: "lb",
+    IMPULSE: "lb-s",
+    TURNING: "ft-lb-s",
+    **_BOTH,
+}
+_METERS = {
+    LENGTH: "m",
+    INERTIA: "kg-m2",
+    ENERGY: "J",
+    FORCE: "N",
+    IMPULSE: "N-s",
+    TURNING: "N-m-s",
+    MASS: "kg",
+    **_BOTH,
+}
 SYSTEMS = {
     "us": System(FOOT, SLUG, {**_FEET, VELOCITY: "mph", MASS: "lb"}),
     "chapter": System(FOOT, SLUG, {**_FEET, VELOCITY: "ft/s", MASS: "slug"}),
