@@ -142,6 +142,14 @@ def test_values_of_a_scene_replace_those_of_a_copy(folder: Path) -> None:
     assert "M = 6 among them, replace those in the copy" in outcome.err
 
 
+@pytest.mark.parametrize(("number", "names"), [(1, ""), (2, "IA IB PA PB TA TB EM")])
+def test_a_brief_verdict_names_what_the_page_cannot_reveal(number: int, names: str) -> None:
+    page = impact88.run(impact88.sample(number)).page
+    outcome = command("verify", "--brief", "-", input=page)
+    assert "IDENTICAL\n" in outcome.out
+    assert outcome.out.partition("errors this page could not reveal: ")[2].strip() == names
+
+
 def test_run_asks_standard_input(folder: Path) -> None:
     outcome = command("run", input=FILES["replies.txt"])
     assert "VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)" in outcome.out

@@ -85,6 +85,8 @@ def _verify_file(
     for exhibit in exhibits:
         lines = words.write(exhibit.result, name, exhibit.number, args.brief)
         record = words.record(exhibit.result, name, exhibit.number, exhibit.digest)
+        if args.brief and exhibit.result.unseen:
+            lines.append(f"  errors this page could not reveal: {' '.join(exhibit.result.unseen)}")
         if exhibit.page:
             lines += [f"  {remark}" for remark in exhibit.page.remarks]
             record |= exhibit.page.places()
