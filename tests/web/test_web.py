@@ -17,7 +17,7 @@ import pytest
 from drawnscenes import SIDE, case_of
 
 import impact88
-from impact88.cases import Case, template
+from impact88.cases import TEMPLATES, Case, template
 from impact88.report.answers import ask
 
 pytest.importorskip("flask")
@@ -179,7 +179,7 @@ def test_a_file_is_opened_and_saved(client: Client) -> None:
     assert Case.loads(file_answer.text).written == {"M": "6"} | case.written
 
 
-@pytest.mark.parametrize("kind", ["intersection", "rear-end", "head-on", "planar"])
+@pytest.mark.parametrize("kind", TEMPLATES)
 def test_a_template_is_opened_as_its_kind(client: Client, kind: str) -> None:
     file = (io.BytesIO(template(kind, "metric").encode()), "crash.toml")
     assert (

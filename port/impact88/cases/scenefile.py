@@ -110,11 +110,9 @@ def _toml_text(text: str) -> str:
 
 
 class Template(NamedTuple):
-    """A kind of collision: its title, the command that takes its file, advice, and its entries, as
-    NAME or NAME=TEXT."""
+    """A kind of collision: its title, advice, and its entries, as NAME or NAME=TEXT."""
 
     title: str
-    command: str
     advice: str
     words: str
 
@@ -128,7 +126,6 @@ class Template(NamedTuple):
 TEMPLATES = {
     "intersection": Template(
         "Intersection: speeds before from skids and departure angles",
-        "solve",
         "Momentum alone: masses, courses before and after, and speeds after. A skid to rest is a\n"
         'speed: SAF = "skid 62 ft at 0.7 +- .05". Courses are counterclockwise from x. Leave SAF\n'
         "and SBF empty and give SA and SB for the converse.",
@@ -136,33 +133,29 @@ TEMPLATES = {
     ),
     "rear-end": Template(
         "Rear end: delta-V from closing speed and restitution",
-        "solve",
         "Both along x, A into B. SB is 0 for a standing car; E is .1 to .4 at low speeds.",
         "M=4 MA MB SA HA=0 SB=0 HB=0 E TA=course TB=course",
     ),
     "head-on": Template(
         "Head-on: speeds after and delta-V",
-        "solve",
         "Along one line: A along x, B against it. E = 0 leaves them locked together.",
         "M=4 MA MB SA HA=0 SB HB=180 E=0 TA=course TB=course",
     ),
-    "barrier": Template(
-        "Barrier: one vehicle against a rigid barrier",
-        "chapter barrier",
-        "The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",
-        "MA IA DA PA TA=0 GA=0 E MU EM=1 UX UY=0 WA=0",
-    ),
     "planar": Template(
         "Planar impact: velocities after from those before",
-        "solve",
         f'{SIGNS}\nMU = "locked" ends the sliding; EM = 1 is no moment.',
         "E MU EM=1 DA DB GA PA PB TA TB MA MB IA IB UX UY WA=0 VX VY WB=0 M=6",
     ),
+    "barrier": Template(
+        "Barrier: one vehicle against a rigid barrier",
+        "The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",
+        "MA IA DA PA TA=0 GA=0 E MU EM=1 UX UY=0 WA=0 MB=inf IB=inf DB=0 PB=0 TB=0 VX=0 VY=0 WB=0",
+    ),
     "crush": Template(
-        "Crush energy to delta-V (Equation 19)",
-        "chapter delta-v",
-        "An estimate from the energy lost, fitted to eleven staged collisions.",
-        "MA MB SA SB EL",
+        "Crush: speed before and delta-V, one vehicle at rest",
+        "EBSA and EBSB are equivalent barrier speeds of the crush; the energies ELA and ELB, or\n"
+        "their sum EL, may replace them. A drives along x into B, and both go on along it.",
+        "M=4 MA MB EBSA EBSB HA=0 SB=0 E=.1 HAF=0 TA=course TB=course",
     ),
 }
 """The kinds of collision that `template` offers."""
@@ -195,7 +188,7 @@ def template(kind: str = "planar", units: str = "us") -> str:
     """
     if kind not in TEMPLATES:
         raise UserError(f"{quoted(kind)} is not a template; expected {', '.join(TEMPLATES)}")
-    title, command, advice, _ = TEMPLATES[kind]
+    title, advice, _ = TEMPLATES[kind]
     view = View.of(units=units)
-    heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 {command} FILE"
+    heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 solve FILE"
     return write_toml({**view.words(), **TEMPLATES[kind].entries}, heading, view)

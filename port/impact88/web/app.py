@@ -27,8 +27,6 @@ from ..report.exhibits import Exhibit, examine
 from .guard import HEADERS, MAX_BODY, PAGE_POLICY, REPORT_POLICY, refusal
 from .questions import answer_in_time
 
-KINDS = {name: kind for name, kind in TEMPLATES.items() if kind.command == "solve"}
-"""Kinds of collision that the page has fields for."""
 DEFAULT_KIND = "planar"
 HEADINGS = ("title", "case", "examiner", "date")
 """Entries for a report."""
@@ -43,7 +41,7 @@ def application(port: int, token: str) -> Flask:
     app.jinja_options = {"trim_blocks": True, "lstrip_blocks": True}
     app.jinja_loader = ChoiceLoader([app.jinja_loader, reports.loader])  # type: ignore[list-item]
     app.jinja_env.filters.update(reports.filters)
-    context = {"root": f"/{token}", "inputs": INPUTS, "kinds": KINDS, "headings": HEADINGS}
+    context = {"root": f"/{token}", "inputs": INPUTS, "kinds": TEMPLATES, "headings": HEADINGS}
     app.jinja_env.globals.update(reports.globals, **context)
 
     @app.before_request
@@ -126,8 +124,8 @@ def collision() -> str:
 
 def _fields(texts: Mapping[str, str], kind: str = DEFAULT_KIND) -> dict[str, Any]:
     """Return what the fields of a kind show; entries without a field follow as text."""
-    kind = kind if kind in KINDS else DEFAULT_KIND
-    names = KINDS[kind].entries
+    kind = kind if kind in TEMPLATES else DEFAULT_KIND
+    names = TEMPLATES[kind].entries
     lines = [f"{n} = {x}" for n, x in texts.items() if n not in (*names, *HEADINGS, *VIEW)]
     return {
         "kind": kind,
@@ -156,11 +154,12 @@ def fields() -> str:
         source, data = upload
         texts, _ = read_toml(decode(data, source), source)
         Case.of(texts, source)
-        # the kind that has most of its names and entries
-        kinds = {name: {*kind.entries, *kind.entries.items()} for name, kind in KINDS.items()}
-        kind = max(kinds, key=lambda name: len(kinds[name] & {*texts, *texts.items()}))
+        entries = [entry for entry in texts.items() if entry[1] != "0"]
+        # the kind that has most of its names, and of its entries but zeros
+        kinds = {name: {*kind.entries, *kind.entries.items()} for name, kind in TEMPLATES.items()}
+        kind = max(kinds, key=lambda name: len(kinds[name] & {*texts, *entries}))
     else:
-        former = KINDS.get(request.form.get("was", ""), KINDS[DEFAULT_KIND]).entries
+        former = TEMPLATES.get(request.form.get("was", ""), TEMPLATES[DEFAULT_KIND]).entries
         texts = {n: text for n, text in _texts().items() if text != former.get(n)}
         kind = request.form.get("kind", "")
     return _show("fields.html", "collision.html", **_fields(texts, kind))
