@@ -17,8 +17,7 @@ def one_line(text: str, longest: int = LONGEST_MESSAGE) -> str:
     Characters that do not print (controls, terminal escapes, line ends, marks of writing direction,
     lone surrogates) are written as in a Python literal; the middle of a longer text is left out."""
     if len(text) > longest:
-        length = longest - 5
-        text = f"{text[: length - length // 3]} ... {text[-(length // 3) :]}"
+        text = f"{text[: longest // 2]} ... {text[-(longest // 3) :]}"
     text = printable(text)
     # escapes are longer than the characters they replace
     return text if len(text) <= longest else one_line(text, longest)
@@ -35,8 +34,6 @@ def printable(text: str, kept: str = "") -> str:
 
 def quoted(value: object) -> str:
     """Return a value for a message: shortened, and in quotes if it is text."""
-    if isinstance(value, str):
-        value = value[: 2 * LONGEST_QUOTE]
     return one_line(repr(value), LONGEST_QUOTE)
 
 

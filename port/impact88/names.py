@@ -220,7 +220,9 @@ def did_you_mean(word: str, known: Collection[str]) -> str:
     from difflib import get_close_matches
 
     in_any_case = {name.lower(): name for name in known}
-    matches = get_close_matches(word.lower()[:80], in_any_case, 1, LIKENESS)
+    letters = word.lower()[:80]
+    matches = [name for name in in_any_case if sorted(name) == sorted(letters)]
+    matches += get_close_matches(letters, in_any_case, 1, LIKENESS)
     return f"; did you mean {in_any_case[matches[0]]}?" if matches else ""
 
 

@@ -36,8 +36,8 @@ SKIDDING = ("SA", "SB", "SAF", "SBF")
 """Speeds: sizes, whose directions are HA HB HAF HBF."""
 MAX_LENGTH = 70  # characters of an entry; three and their commas fit the 239 that INPUT keeps
 EXPECTED = (
-    "expected such as 25, -25 mph, 6 ft 6 in, 28 .. 32 mph, 30 +- 2 mph, 30 +- 5 %, "
-    "normal 30 1.5, triangular 28 30 33"
+    "expected such as 25, 28 .. 32, 30 +- 2, 30 +- 5 %, normal 30 1.5, triangular 28 30 33, with "
+    "a unit or without (mph, ft, lb, deg); course of TA TB, locked of MU, estimate of IA IB"
 )
 
 
@@ -202,7 +202,7 @@ def _image(
 _DIGITS = r"(?:\d{1,3}(?:,\d{3})+(?!\d)(?:\.\d*)?|\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = re.compile(rf"([-+]? ?{_DIGITS}) ?([a-zA-Z°%].*)?")
 _FEET = re.compile(rf"([-+]?) ?({_DIGITS}) ?(?:ft|foot|feet) ?({_DIGITS}) ?(?:in|inch|inches)")
-_SKID = re.compile(r"skid (.+) at (.+)")
+_SKID = re.compile(r"skid (.+) at ((?:[-+.\d]|normal |uniform |triangular ).*)")
 _SPELLINGS = str.maketrans({"−": "-", "–": "-", "⋅": "·", "×": "*", "º": "°", "±": TOLERANCE})
 _DECIMAL_COMMA = re.compile(r"[-+]?\d{1,3},\d{3}")
 _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}

@@ -187,7 +187,9 @@ def template(kind: str = "planar", units: str = "us") -> str:
     MA = ""              # mass of A [kg]
     """
     if kind not in TEMPLATES:
-        raise UserError(f"{quoted(kind)} is not a template; expected {', '.join(TEMPLATES)}")
+        raise UserError(
+            f"{quoted(kind)} is not a kind of collision; expected {', '.join(TEMPLATES)}"
+        )
     title, advice, _ = TEMPLATES[kind]
     view = View.of(units=units)
     heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 solve FILE"

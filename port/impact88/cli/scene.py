@@ -29,9 +29,10 @@ OPTIONS = (*CASE, OUTPUT)
 
 def main(args: Args) -> None:
     """Print a scene file."""
-    if args.file in TEMPLATES or not (args.file or args.sample):
-        if args.sample or args.set:
-            raise UserError("a template takes neither --sample nor --set; expected a FILE.toml")
-        print(template(args.file or "planar", args.units or "us"), end="")
+    kind = args.file or "planar"
+    if not args.sample and kind.replace("-", "").isalpha():
+        if args.set:
+            raise UserError("an empty file takes no --set; expected a FILE.toml")
+        print(template(kind, args.units or "us"), end="")
     else:
         print(case_of(args).toml(), end="")

@@ -37,7 +37,9 @@ def format_of(path: str, given: str = "") -> str:
     if given or path == "-":
         return given or "csv"
     if ending not in ENDINGS:
-        raise UserError(f"expected a name that ends in {' '.join(ENDINGS)}, or --from, --to", path)
+        raise UserError(
+            f"expected .toml to read, or a table in {' '.join(ENDINGS)} or with --from, --to", path
+        )
     return ENDINGS[ending]
 
 
