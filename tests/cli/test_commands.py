@@ -150,6 +150,21 @@ def test_a_brief_verdict_names_what_the_page_cannot_reveal(number: int, names: s
     assert outcome.out.partition("errors this page could not reveal: ")[2].strip() == names
 
 
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("scene intersecton", "expected intersection, rear-end, head-on, planar, barrier, crush"),
+        ("solve printout.txt", "expected a table or a .toml; for a printout use verify"),
+        ("solve case.png", "expected .toml to read, or a table in .csv"),
+        ("report rear.toml", "expected -o FILE.html, FILE.svg or FILE.png"),
+    ],
+)
+def test_what_is_expected_is_said(line: str, words: str, folder: Path) -> None:
+    outcome = command(*line.split(), folder=folder)
+    assert outcome.status == 2
+    assert words in outcome.err
+
+
 def test_run_asks_standard_input(folder: Path) -> None:
     outcome = command("run", input=FILES["replies.txt"])
     assert "VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)" in outcome.out

@@ -59,8 +59,8 @@ def check_headings(names: Sequence[str], where: str) -> list[str]:
     headings = [name.strip() for name in names]
     if not any(headings) or len(headings) > MAX_COLUMNS:
         raise UserError(
-            f"has no line of 1 to {MAX_COLUMNS:,} headings, such as UX [mph]; expected a table or a "
-            ".toml; for a printout use verify",
+            f"has no line of 1 to {MAX_COLUMNS:,} headings, such as UX [mph]; expected a table or "
+            "a .toml; for a printout use verify",
             where,
         )
     for name, count in Counter(headings).items():
