@@ -35,7 +35,7 @@ def page_and_drawing() -> str:
     box = re.search(r'viewBox="([^"]+)"', drawing)
     assert box is not None
     width, height = map(float, box[1].split()[2:])
-    scale = 400 / height
+    scale = min(350 / width, 400 / height)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 830 420" {FONT}>',
         "<title>A page of the 1988 program, and its collision from above</title>",
@@ -50,7 +50,9 @@ def page_and_drawing() -> str:
     caption = "as an Apple II Plus printed it: every digit is computed again"
     parts.append(f'<text x="26" y="396" font-size="12" fill="#666">{caption}</text>')
     inner = drawing.replace(
-        "<svg ", f'<svg x="470" y="10" width="{width * scale:.0f}" height="400" ', 1
+        "<svg ",
+        f'<svg x="470" y="10" width="{width * scale:.0f}" height="{height * scale:.0f}" ',
+        1,
     )
     return "\n".join([*parts, inner, "</svg>"]) + "\n"
 
