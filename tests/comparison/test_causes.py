@@ -10,6 +10,8 @@ import pytest
 from wrongprograms import answers
 
 import impact88
+from impact88.comparison import constants, diagnosis
+from impact88.comparison.evaluation import Edit
 from impact88.comparison.kit import frozen_vectors
 from impact88.comparison.mutants import models, sites
 from impact88.comparison.spellings import COLUMNS, NAMES, VELOCITIES
@@ -123,6 +125,30 @@ class TestMistakes:
         theirs = impact88.solve({**SCENE, "PA": 90 - SCENE["PA"] - 2 * SCENE["TA"]}, VELOCITIES)
         (cause,) = impact88.compare({**SCENE, **theirs}).causes
         assert cause.edit == "sine and cosine of A's direction TA + PA exchanged"
+
+
+class TestEdits:
+    @pytest.mark.parametrize("pi", [3.14, 3.1416, 3.14159, 22 / 7])
+    def test_a_wrong_pi_has_a_name(self, pi: float) -> None:
+        _, meaning = constants._digits_and_meaning(pi / np.pi, constants.FACTOR)
+        assert meaning.endswith("for pi)")
+
+    @pytest.mark.parametrize("factor", [1 + 1e-7, 1 - 1e-7, 3.14158 / np.pi, 3.143 / np.pi])
+    def test_another_factor_has_none(self, factor: float) -> None:
+        assert constants._digits_and_meaning(factor, constants.FACTOR)[1] == ""
+
+    def test_a_second_edit_changes_rows(self) -> None:
+        columns = {**SCENE, "row": np.arange(len(TEXTS)) + 1.0}
+        inputs = {"UX": 2 * SCENE["UX"], "VY": SCENE["VY"] * (1 + (columns["row"] > 99))}
+        theirs = impact88.solve({**SCENE, **inputs}, VELOCITIES)
+        limits = {name: 1e-6 + 1e-6 * np.abs(column) for name, column in theirs.items()}
+        sample = diagnosis.Sample(columns, theirs, limits, np.ones(len(TEXTS), bool))
+        base = (Edit("UX doubled", {"< UX": "2 * UX"}),)
+        plain = sample.fits(sample.program("impulses", base).base)[0]
+        assert plain.sum() == 99
+        candidates = diagnosis.search(sample, "velocities", ("impulses",), base)
+        assert any("VY" in candidate.text for candidate in candidates)
+        assert all((candidate.rows != plain).any() for candidate in candidates)
 
 
 class TestNoCause:

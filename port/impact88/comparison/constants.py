@@ -23,7 +23,7 @@ MIN_ROWS = 2  # that give a constant
 MAX_SPREAD = 1e-2  # of the constants that the rows give, relative; the digits then decide
 EXACT_SPREAD = 1e-9  # up to which the constant has all its digits
 SHORT_TOLERANCE = 1e-12  # relative distance at which a constant has nine digits or fewer
-KNOWN_TOLERANCE = 1e-6  # relative distance at which a constant is a known one
+KNOWN_TOLERANCE = 4e-7  # relative distance at which a constant is a known one; 3.14159 is no 1
 RANK = 5  # behind the edits without a constant
 RANK_KNOWN = 1
 GROUPS = {
@@ -36,6 +36,7 @@ KNOWN = {
     "3.14 for pi": 3.14 / pi,
     "22/7 for pi": 22 / 7 / pi,
     "3.1416 for pi": 3.1416 / pi,
+    "3.14159 for pi": 3.14159 / pi,
     "57.3 for 180/pi": 57.3 * pi / 180,
     "0.01745 for pi/180": 0.01745 * 180 / pi,
     "32.2 for 32.174": 32.2 / 32.174,
@@ -238,4 +239,4 @@ def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:
         if form is FACTOR
         and min(abs(constant / value - 1), abs(constant * value - 1)) < KNOWN_TOLERANCE
     ]
-    return repr(constant), f" ({meanings[0]})" if meanings else ""
+    return f"{constant:.15g}", f" ({meanings[0]})" if meanings else ""

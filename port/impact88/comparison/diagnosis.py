@@ -189,6 +189,8 @@ def search(
                     if fit.sum() >= need:
                         rows = sample.fits(full.run(edit.changes))[0]
                         candidates.append(Candidate(name, (*base, edit), rows))
+    plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
+    candidates = [c for c in candidates if (c.rows != plain).any()]
     return sorted(candidates, key=lambda c: (-score(c.rows, sample), c.rank))
 
 
@@ -249,7 +251,11 @@ def _confirm(candidates: Sequence[Candidate], sample: Sample, held_out: Sample) 
     usable.sort(key=lambda c: (score(c.rows, sample) < best - margin, c.rank))
     for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
         if is_complete(candidate.gives(held_out), held_out):
-            texts = [c.text for c in usable[place + 1 :] if c.condition == candidate.condition]
+            texts = [
+                c.text
+                for c in usable[place + 1 : MAX_CONDITIONAL]
+                if c.condition == candidate.condition and is_complete(c.gives(held_out), held_out)
+            ]
             distinct_texts = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
             return candidate._replace(alternatives=distinct_texts[:MAX_ALTERNATIVES])
     return None

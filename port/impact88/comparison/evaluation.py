@@ -85,7 +85,7 @@ class Program:
     name : str
         The spelling.
     columns : mapping of str to ndarray
-        The scenes, and further columns that edits may read ("UX_before": of the row before).
+        The scenes, and the number of the row.
     edits : iterable of Edit
         Edits, the later on top of the earlier.
     velocities : mapping of str to ndarray, optional

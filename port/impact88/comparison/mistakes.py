@@ -25,13 +25,9 @@ Places = NDArray[np.intp]
 
 
 def columns_of(table: Table, rows: Places) -> dict[str, Floats]:
-    """Return rows of the scene with those of the rows before and after, and the row's number."""
+    """Return rows of the scene, and the row's number."""
     columns = {name: table.scene[name][rows] for name in COLUMNS}
-    for name in COLUMNS:
-        columns[f"{name}_before"] = table.scene[name][rows - 1]
-        columns[f"{name}_after"] = table.scene[name][(rows + 1) % table.size]
-    columns["row"] = (rows + 1).astype(np.float64)
-    return columns
+    return {**columns, "row": (rows + 1).astype(np.float64)}
 
 
 def find_causes(table: Table) -> tuple[Cause, ...]:

@@ -343,9 +343,6 @@ def _columns(side: str, names: Sequence[str], how: str) -> Iterator[Edit]:
             if side == ">" and other not in similar and other != name:
                 says = f"{other} in place of {name}, {how}"
                 yield Edit(says, {f"{side} {name}": other}, RANK_FAR)
-        for row in ("before", "after") if side == "<" else ():
-            says = f"{name} of the row {row}"
-            yield Edit(says, {f"{side} {name}": f"{name}_{row}"}, RANK_MODEL + 1)
 
 
 def describe(edit: Edit, name: str) -> str:
