@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import impact88
+from impact88.cases.amounts import Amount
 from impact88.errors import UserError
 from impact88.mechanics.solve import solve
 from impact88.reconstruction.bounds import bounds
@@ -106,3 +107,14 @@ def test_what_cannot_be_used(change, words):
             "DVA",
             correlations={("UX", "VX"): 0.9, ("VX", "VY"): 0.9, ("UX", "VY"): -0.9},
         )
+
+
+@pytest.mark.parametrize("name", ["MA", "MB", "IA", "IB"])
+def test_limits_of_masses_and_inertias_lie_above_0(name):
+    scene = dict(impact88.sample(1))
+    middle = float(scene[name])
+    for text in ("1 +- 1", "0 .. 3", "normal 3 1", Amount(middle, -1.0, 2 * middle, "uniform")):
+        with pytest.raises(UserError, match=f"{name} is known within limits that reach 0"):
+            bounds({**scene, name: text}, "DVA", samples=10)
+    for text in (f"{middle} +- {0.9 * middle}", f"normal {middle} {0.3 * middle}"):
+        assert bounds({**scene, name: text}, "DVA", samples=10).outputs["DVA"].lower > 0

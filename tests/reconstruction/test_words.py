@@ -138,7 +138,7 @@ def test_momentum_of_bodies_whose_dimensions_are_not_given():
         ({"MU": 0.5}, "MU cannot be used: missing GA"),
         ({"ELA": 5}, "ELA given; expected ELA or EBSA together with"),
         ({"EBSA": 5, "EBSB": 6, "EL": 30}, "EBSA, EBSB given; expected"),
-        ({"SAF": float("inf")}, "SAF is inf"),
+        ({"SAF": float("inf")}, "SAF = 'INF' is not an amount"),
         ({"M": 5}, "M is 5; expected 6 for bodies or 4 for point masses"),
     ],
 )

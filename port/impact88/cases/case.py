@@ -171,7 +171,7 @@ class Case:
             For an unknown name, a text that is not an amount, units of two systems, a bare number
             among units, and entries that contradict one another.
         """
-        entered = {n: text for n, value in entries.items() if (text := _text(n, value))}
+        entered = {n: text for n, value in entries.items() if (text := entry_text(n, value))}
         places = places or {}
         quantities = {n: t for n, t in entered.items() if n not in ABOUT and not n.endswith(SOURCE)}
         sources = {n.removesuffix(SOURCE): t for n, t in entered.items() if n.endswith(SOURCE)}
@@ -298,7 +298,7 @@ class Case:
         return write_toml({**self.view.words(), **self.written}, view=self.view)
 
 
-def _text(name: str, value: Any) -> str:
+def entry_text(name: str, value: Any) -> str:
     """Return a value as a case keeps it; "" for nothing."""
     if value is None or isinstance(value, str):
         return (value or "").strip()
