@@ -9,6 +9,7 @@ import pytest
 from captures import ROOT
 from guide import DOCS, chapters
 
+from impact88 import status
 from impact88.cli import COMMANDS, GONE
 from impact88.names import SCENE
 
@@ -69,3 +70,11 @@ def test_every_command_has_an_example_and_no_page_names_one_that_went() -> None:
     text = "\n".join(page.read_text("utf-8") for page in [READMES[0], *chapters()])
     assert [name for name in COMMANDS if f"impact88 {name}" not in text] == []
     assert [name for name in GONE if re.search(rf"`?impact88 {name}\b", text)] == []
+
+
+def test_the_bits_of_status_are_those_of_the_code() -> None:
+    rows = re.findall(
+        r"^\| (\d+) \| `(\w+)` \| (.+) \|$", (DOCS / "guide" / "tables.md").read_text("utf-8"), re.M
+    )
+    bits = [(str(int(bit)), bit.name, status.WORDS[bit]) for bit in status.Status]
+    assert rows == bits

@@ -19,8 +19,8 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     Parameters
     ----------
     known : mapping of str to float, str or Amount
-        Values by name, read as in a file of these entries (`Case.of`), with their units; None counts
-        as not given.
+        Values by name, read as in a file of these entries (`Case.of`), with their units; None
+        counts as not given.
     allowed : collection of str
         Names that may be known.
 
