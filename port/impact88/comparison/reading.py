@@ -101,7 +101,7 @@ def scene_columns(
         if name in columns:
             scene[name] = numbers(columns[name])
             for row in np.flatnonzero(np.isnan(scene[name])):
-                if str(cell := columns[name][row]).strip().lower() not in EMPTY:
+                if (cell := str(columns[name][row])).strip().lower() not in EMPTY:
                     raise UserError(f"{name} = {quoted(cell)} is not a number", f"row {row + 1}")
             scene[name] *= factors[name]
         elif name in values:
