@@ -125,14 +125,14 @@ class Template(NamedTuple):
 
 TEMPLATES = {
     "intersection": Template(
-        "Intersection: speeds before from skids and departure angles",
+        "Intersection: speeds before, from skids",
         "Momentum alone: masses, courses before and after, and speeds after. A skid to rest is a\n"
         'speed: SAF = "skid 62 ft at 0.7 +- .05". Courses are counterclockwise from x. Leave SAF\n'
         "and SBF empty and give SA and SB for the converse.",
         "M=4 MA MB HA HB SAF HAF SBF HBF TA=course TB=course",
     ),
     "rear-end": Template(
-        "Rear end: delta-V from closing speed and restitution",
+        "Rear end: delta-V from closing speed",
         "Both along x, A into B. SB is 0 for a standing car; E is .1 to .4 at low speeds.",
         "M=4 MA MB SA HA=0 SB=0 HB=0 E TA=course TB=course",
     ),
@@ -142,17 +142,17 @@ TEMPLATES = {
         "M=4 MA MB SA HA=0 SB HB=180 E=0 TA=course TB=course",
     ),
     "planar": Template(
-        "Planar impact: velocities after from those before",
+        "Planar impact: velocities after",
         f'{SIGNS}\nMU = "locked" ends the sliding; EM = 1 is no moment.',
         "E MU EM=1 DA DB GA PA PB TA TB MA MB IA IB UX UY WA=0 VX VY WB=0 M=6",
     ),
     "barrier": Template(
-        "Barrier: one vehicle against a rigid barrier",
+        "Barrier: one vehicle on a rigid barrier",
         "The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",
         "MA IA DA PA TA=0 GA=0 E MU EM=1 UX UY=0 WA=0 MB=inf IB=inf DB=0 PB=0 TB=0 VX=0 VY=0 WB=0",
     ),
     "crush": Template(
-        "Crush: speed before and delta-V, one vehicle at rest",
+        "Crush: speed before, B at rest",
         "EBSA and EBSB are equivalent barrier speeds of the crush; the energies ELA and ELB, or\n"
         "their sum EL, may replace them. A drives along x into B, and both go on along it.",
         "M=4 MA MB EBSA EBSB HA=0 SB=0 E=.1 HAF=0 TA=course TB=course",
