@@ -21,8 +21,8 @@ def test_a_complete_scene_is_solved_forward() -> None:
     answer = ask(Case.loads(CRASH).with_(UX="-25", VY="40", E=".2"))
     assert answer.asked == "forward"
     assert answer.intervals == {}
-    solved = impact88.solve(answer.case.numbers, ["DVA", "LOSS"])
-    assert answer.found["DVA"].value == pytest.approx(solved["DVA"] / 88 * 60, rel=1e-12)
+    results = impact88.solve(answer.case.numbers, ["DVA", "LOSS"])
+    assert answer.found["DVA"].value == pytest.approx(results["DVA"] / 88 * 60, rel=1e-12)
     assert answer.found["DVA"].text == "18.56"
     assert answer.found["LOSS"].unit == "%"
 
@@ -66,9 +66,9 @@ def test_exact_entries_are_given_not_found() -> None:
 
 
 def test_tolerances_are_checked_against_each_other() -> None:
-    checked = ask(Case.loads(RECORDER)).sections["checked"]
-    assert {text.split()[0] for text in checked} == {"DVA", "DVB", "SA"}
-    assert any(text.startswith("DVA 3.1 mph given, 2.8") for text in checked)
+    sentences = ask(Case.loads(RECORDER)).sections["checked"]
+    assert {text.split()[0] for text in sentences} == {"DVA", "DVB", "SA"}
+    assert any(text.startswith("DVA 3.1 mph given, 2.8") for text in sentences)
 
 
 def test_a_result_that_needs_more_is_left_out_and_says_why() -> None:
@@ -121,11 +121,11 @@ def test_a_number_has_the_same_digits_everywhere(name: str, tmp_path: Path) -> N
     (tmp_path / name).write_text(FILES[name], "utf-8")
     answer = ask(Case.load(str(tmp_path / name)), full=True)
     assert set(answer.found) <= set(ALL)
-    printed = command("solve", name, "--full", folder=tmp_path).out
+    text = command("solve", name, "--full", folder=tmp_path).out
     record = json.loads(command("solve", name, "--full", "--json", folder=tmp_path).out)
     command("report", name, "-o", "case.html", folder=tmp_path)
     page = (tmp_path / "case.html").read_text("utf-8")
-    table = printed.partition("\n\nCHECKED")[0].splitlines()
+    table = text.partition("\n\nCHECKED")[0].splitlines()
     rows = {line.split()[0]: line.split() for line in table if line[:1].isupper()}
     in_json = {number["name"]: number for number in record["found"]}
     assert page.count('<td class="n">') > 5

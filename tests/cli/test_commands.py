@@ -16,15 +16,16 @@ import impact88
 from cases import FILES
 from impact88.cli import COMMANDS, GONE
 from impact88.cli.output import FORMS
+from impact88.comparison import selfcheck
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text, "utf-8")
-    printed = impact88.run(impact88.sample(1)).page
-    (tmp_path / "printout.txt").write_text(printed, "utf-8")
-    (tmp_path / "altered.txt").write_text(printed.replace("-13.263", "-13.363"), "utf-8")
+    page = impact88.run(impact88.sample(1)).page
+    (tmp_path / "printout.txt").write_text(page, "utf-8")
+    (tmp_path / "altered.txt").write_text(page.replace("-13.263", "-13.363"), "utf-8")
     (tmp_path / "scenes.jsonl").write_text(
         json.dumps({"id": 1, "scene": dict(impact88.sample(1))}) + "\n", "utf-8"
     )
@@ -98,7 +99,6 @@ def test_a_command_that_is_gone_says_what_to_use(name: str) -> None:
         "solve rear.toml --json",
         "verify printout.txt --json",
         "chapter example --json",
-        "selfcheck --json",
     ],
 )
 def test_json_has_a_version(line: str, folder: Path) -> None:
@@ -107,6 +107,15 @@ def test_json_has_a_version(line: str, folder: Path) -> None:
     name, form, version = record["schema"].split("/")
     assert (name, FORMS[form]) == ("impact88", int(version))
     assert record["version"] == impact88.__version__
+
+
+def test_the_record_of_an_installation_has_a_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the checks, which are run by tests/comparison/test_kit.py."""
+    monkeypatch.setattr(selfcheck, "checks", lambda: iter(()))
+    outcome = command("selfcheck", "--json")
+    record = json.loads(outcome.out)
+    assert record["schema"] == f"impact88/selfcheck/{FORMS['selfcheck']}"
+    assert outcome.status == 0
 
 
 @pytest.mark.parametrize(
@@ -172,19 +181,19 @@ def test_run_asks_standard_input(folder: Path) -> None:
 
 
 def test_a_dash_is_standard_input() -> None:
-    solved = command("solve", "-", "--from", "toml", input=FILES["rear.toml"])
-    assert (solved.status, solved.err) == (0, "")
-    verified = command("verify", "-", input=impact88.run(impact88.sample(2)).page)
-    assert verified.status == 0
+    answer = command("solve", "-", "--from", "toml", input=FILES["rear.toml"])
+    assert (answer.status, answer.err) == (0, "")
+    verdict = command("verify", "-", input=impact88.run(impact88.sample(2)).page)
+    assert verdict.status == 0
     table = "MU,DVA\n.5,1\n"
     assert command("solve", "-", "--set", "MA=1", input=table).status == 2
 
 
 def test_set_is_editing_the_file(folder: Path) -> None:
-    edited = FILES["crash.toml"].replace("MU = 0.5", "MU = 0.7")
-    (folder / "edited.toml").write_text(edited, "utf-8")
-    changed = command("solve", "crash.toml", "--set", "MU=0.7", folder=folder)
-    assert changed.out == command("solve", "edited.toml", folder=folder).out
+    text = FILES["crash.toml"].replace("MU = 0.5", "MU = 0.7")
+    (folder / "edited.toml").write_text(text, "utf-8")
+    outcome = command("solve", "crash.toml", "--set", "MU=0.7", folder=folder)
+    assert outcome.out == command("solve", "edited.toml", folder=folder).out
 
 
 def test_bad_rows_are_named_and_the_others_solved(folder: Path) -> None:
@@ -223,8 +232,8 @@ def test_the_prompt_lists_retypes_and_runs() -> None:
 
 
 def test_the_prompt_keeps_programs(folder: Path) -> None:
-    typed = "10 PRINT 2\nSAVE hello.bas\nSAVE new.bas\nLOAD hello.bas\nLIST\n"
-    outcome = command("basic", input=typed, folder=folder)
+    lines = "10 PRINT 2\nSAVE hello.bas\nSAVE new.bas\nLOAD hello.bas\nLIST\n"
+    outcome = command("basic", input=lines, folder=folder)
     assert "hello.bas: exists; expected a new name" in outcome.err
     assert '20  PRINT "HELLO, "N$' in outcome.out
     assert (folder / "hello.bas").read_text() == FILES["hello.bas"]

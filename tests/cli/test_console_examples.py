@@ -31,10 +31,12 @@ def visible_lines(text: str) -> list[str]:
     return [line.rstrip() for line in re.sub(r"[\0\a\f]", "", text).rstrip("\n").split("\n")]
 
 
-def is_shown(shown: list[str], printed: list[str]) -> bool:
-    """Return True if printed lines are the shown ones, in which ``...`` stands for any."""
-    pattern = "".join(r"(?:.*\n)*" if line == "..." else re.escape(line) + r"\n" for line in shown)
-    return re.fullmatch(pattern, "".join(f"{line}\n" for line in printed)) is not None
+def is_shown(pattern_lines: list[str], lines: list[str]) -> bool:
+    """Return True if lines are those of a page, in which ``...`` stands for any."""
+    pattern = "".join(
+        r"(?:.*\n)*" if line == "..." else re.escape(line) + r"\n" for line in pattern_lines
+    )
+    return re.fullmatch(pattern, "".join(f"{line}\n" for line in lines)) is not None
 
 
 def page_name(page: Path) -> str:
@@ -50,15 +52,15 @@ def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> Non
     for block in blocks(page, "console"):
         assert block.startswith("$ ")
         for example in re.split(r"^\$ ", block, flags=re.M)[1:]:
-            line, _, shown = example.partition("\n")
+            line, _, text = example.partition("\n")
             words = shlex.split(line, comments=True)
             if words[0] == "impact88" and not SHELL_WORDS & set(words):
                 outcome = command(*words[1:], folder=tmp_path)
             else:
                 outcome = shell(line, tmp_path)
-            printed = visible_lines(outcome.err + outcome.out)
-            if not is_shown(visible_lines(shown), printed):
-                assert printed == visible_lines(shown), line
+            lines = visible_lines(outcome.err + outcome.out)
+            if not is_shown(visible_lines(text), lines):
+                assert lines == visible_lines(text), line
 
 
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p, "pycon")], ids=page_name)
@@ -67,5 +69,5 @@ def test_python_examples_print_what_is_shown(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     session = "\n".join(blocks(page, "pycon"))
-    parsed = doctest.DocTestParser().get_doctest(session, {}, page.name, page.name, 0)
-    assert doctest.DocTestRunner().run(parsed).failed == 0, capsys.readouterr().out
+    examples = doctest.DocTestParser().get_doctest(session, {}, page.name, page.name, 0)
+    assert doctest.DocTestRunner().run(examples).failed == 0, capsys.readouterr().out
