@@ -101,6 +101,19 @@ def test_findings_are_marked_in_the_text() -> None:
     assert "\\r" not in html
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("MU= .911", "MU= .912", "MU &#39;.912&#39;: the program prints"),
+        ("100904.929", "100904.920", "INITIAL KE &#39;100904.920&#39;: the program prints"),
+        ("(XA=-8.78", "(XA=-8.79", "XA after the impact &#39;-8.79&#39;: the program prints"),
+    ],
+)
+def test_a_page_has_the_names_of_the_printout(old: str, new: str, words: str) -> None:
+    page = impact88.run(impact88.sample(1)).page.replace(old, new)
+    assert words in verification_page(examine("paper.txt", page.encode()))
+
+
 def test_findings_are_marked_on_the_picture() -> None:
     pytest.importorskip("PIL")
     page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")

@@ -284,7 +284,7 @@ def unit_of(case: Case, name: str) -> str:
 def numbers_of(
     case: Case,
     values: Mapping[str, float],
-    intervals: Mapping[str, tuple[float, float]] | None = None,
+    intervals: Mapping[str, tuple[float, float]] = {},
 ) -> dict[str, Row]:
     """Return values as rows of an answer.
 
@@ -303,7 +303,7 @@ def numbers_of(
         rule = quantity(name).unit
         group = [x for n, x in numbers.items() if quantity(n).unit == rule]
         decimals, ends, interval = decimals_in(rule, group), None, ""
-        if intervals and name in intervals:
+        if name in intervals:
             low, high = case.view.shown_ends(name, *intervals[name])
             if rule == ANGLE and math.isfinite(value):  # a heading is within one turn
                 turns = 360.0 * round((value - (low + high) / 2) / 360.0)
