@@ -45,7 +45,7 @@ METHODS = {
         "1968). Intervals hold 90 % of the draws of a sequential Monte Carlo sampler."
     ),
 }
-"""What follows the equations in the method of each question."""
+"""Method of each question, after the sentence on the equations."""
 NOT_JUDGED = (
     "Motion before and after the impact, crush and injury: nothing of them is computed here, but "
     "for skids written as such (v = √(2 μ g d), level road, one friction).",
