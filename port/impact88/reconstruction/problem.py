@@ -278,7 +278,7 @@ class Problem:
         known = self.known
         masses = [known[name].value for name in ("MA", "MB")]
         if min(masses) <= 0 or not np.isfinite(min(masses)):
-            raise UserError(f"MA = {masses[0]:g} and MB = {masses[1]:g}; expected masses above 0")
+            raise UserError("expected MA and MB above 0, and not both inf")
         self.mass = 1.0 / sum(1.0 / mass for mass in masses)
         ratios = [known["I" + v].value / known["M" + v].value for v in "AB"]
         finite = [ratio for ratio in ratios if np.isfinite(ratio)]
