@@ -47,7 +47,7 @@ def test_what_is_no_scene(changes, message):
 def test_missing_values_are_named():
     with pytest.raises(UserError, match=r"scene: missing E \(coefficient of restitution\)"):
         Scene({"UX": "1"})
-    with pytest.raises(UserError, match="5 is not a mapping"):
+    with pytest.raises(UserError, match="int is not a mapping"):
         Scene(5)
     with pytest.raises(UserError, match="there is no sample 4"):
         sample(4)

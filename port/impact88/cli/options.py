@@ -96,7 +96,7 @@ def check_files(args: Args) -> None:
         paths = value if isinstance(value, list) else [value]
         inputs += [path for path in paths if isinstance(path, InputPath)]
         if isinstance(value, OutputPath):
-            outputs[f"--{name}"] = value
+            outputs["-o" if name == "target" else f"--{name}"] = value
     check_apart(inputs, outputs)
 
 

@@ -13,7 +13,7 @@ exit status: 0 every line answered; 1 some could not be used; 2 no usable input"
 
 from __future__ import annotations
 
-from ..errors import UserError
+from ..errors import UserError, library
 from ..files import display_name, open_bytes
 from .options import OUTPUT, Args, InputPath, flag, option
 from .output import progress, to_json
@@ -42,6 +42,8 @@ def main(args: Args) -> int:
         return 0
     from ..comparison.oracle import answer_lines
 
+    if not args.no_reference:
+        library("mpmath", "oracle", "the reference of 30 digits")
     answers = failures = 0
     with progress("oracle") as update, open_bytes(args.scenes) as file:
         lines = (line.decode("utf-8-sig", "replace") for line in file)

@@ -129,6 +129,8 @@ def compare_columns(
         return comparison, table.wrong
     cause_list = find_causes(table) if causes else ()
     disagreements = _disagreements(table, bool(cause_list))
+    if causes and not cause_list:
+        comparison = replace(comparison, notes=(*comparison.notes, "no cause was found"))
     return replace(comparison, causes=cause_list, disagreements=disagreements), table.wrong
 
 

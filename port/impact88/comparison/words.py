@@ -37,16 +37,20 @@ def as_text(comparison: "Comparison") -> str:
     ]
     lines += [f"results compared: {' '.join(comparison.results)}", *comparison.notes]
     if comparison.differing:
-        lines += ["", "Likely cause" if comparison.causes else "No cause was found."]
+        lines += ["", "Likely cause"] if comparison.causes else []
         for cause in comparison.causes:
             lines += [f"  {line}" for line in cause_sentences(cause)]
         results = (f"  {disagreement_line(item)}" for item in comparison.disagreements)
         lines += ["", "Results that disagree", *results]
     for reason, ids in comparison.kit.get("failed", {}).items():
         shown = ", ".join(ids[:5]) + ", ..." * (len(ids) > 5)
-        lines.append(f"{len(ids)} vectors: {reason} ({shown})")
+        lines.append(f"{reason}: {len(ids)} of the vectors ({shown})")
     if kit := comparison.kit:
-        lines.append(f"kit {kit['id']}: {kit['passed']} of {kit['vectors']} vectors pass")
+        vectors = f"{kit['passed']} of {kit['vectors']} vectors pass"
+        lines.append(
+            f"kit {kit['id']}: {vectors}; {comparison.agreeing} agree, the others have no number "
+            "to compare or fail"
+        )
     return "\n".join(lines)
 
 
@@ -61,7 +65,8 @@ def as_json(comparison: "Comparison") -> dict[str, Any]:
 def as_junit(comparison: "Comparison", name: str) -> str:
     """Return a JUnit report: a test for the rows that agree, and one for each that fails."""
     causes = "; ".join(f"{c.edit} {c.where}".strip() for c in comparison.causes)
-    failures = {f"row {row}": causes or "no cause found" for row in comparison.differing_rows}
+    rows = () if comparison.kit else comparison.differing_rows
+    failures = {f"row {row}": causes or "a result disagrees" for row in rows}
     for reason, ids in comparison.kit.get("failed", {}).items():
         failures |= {f"vector {label}": reason for label in ids}
     if not comparison.passed and not failures:

@@ -247,7 +247,7 @@ class Prepared:
         self._numbers = np.array([self._scene[name] for name in self._kernel.fixed])
         self._rows = [names.index(name) for name in self._kernel.changing]
 
-    def __call__(self, values: ArrayLike) -> dict[str, Any]:
+    def __call__(self, values: ArrayLike, *surplus: object) -> dict[str, Any]:
         """Return the results of scenes.
 
         Parameters
@@ -269,8 +269,9 @@ class Prepared:
             block = np.asarray(values, np.float64)
         except (TypeError, ValueError):
             block = self._broadcast_rows(values)
-        if len(block) != len(self.names):
-            raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
+        if surplus or block.shape[:1] != (len(self.names),):
+            names = " ".join(self.names)
+            raise UserError(f"expected one array with a row for each of {names}")
         if not block.flags.carray:
             block = block.copy()
         shape = block.shape[1:]
@@ -346,10 +347,12 @@ def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str,
     """Return the needed columns of a mapping or frame as doubles. Raises UserError."""
     names = columns
     if not isinstance(columns, Mapping):  # a frame: of pyarrow, or of pandas or polars
-        names = getattr(columns, "column_names", getattr(columns, "columns", None))
+        names = None
+        if not hasattr(columns, "collect"):  # a lazy frame
+            names = getattr(columns, "column_names", getattr(columns, "columns", None))
         if names is None:
             kind = type(columns).__name__
-            raise UserError(f"a {kind} has no columns; expected a mapping or a data frame")
+            raise UserError(f"{kind} has no columns; expected a mapping or a data frame")
     numbers = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
     _complete_points(numbers)
     if len(numbers) < len(needed):
@@ -393,6 +396,7 @@ def _number(name: str, at: int, cell: Any) -> float:
         if cell is None or type(cell).__name__ == "NAType":  # of pandas
             return math.nan
         if isinstance(cell, str):
+            cell = str(cell)  # not numpy's
             return to_double(cell)
         if not np.iscomplexobj(cell):
             return float(cell)

@@ -68,7 +68,7 @@ def verify(
     name = "text"
     if isinstance(source, str) and "\n" in source:
         text = source
-    elif isinstance(source, str | os.PathLike):
+    elif isinstance(source, str | os.PathLike) and source:
         name = files.display_name(os.fspath(source))
         text = read_text(files.read_bytes(os.fspath(source), MAX_BYTES), name)
     elif isinstance(source, bytes):

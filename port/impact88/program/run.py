@@ -114,7 +114,7 @@ def start(
     Raises UserError for an unknown arithmetic, and `console.EndOfInput`.
     """
     if not isinstance(arithmetic, Arithmetic):
-        check_names([arithmetic], ARITHMETICS, "arithmetic")
+        check_names([arithmetic], ARITHMETICS, "kind of arithmetic")
         arithmetic = ARITHMETICS[arithmetic]
     error, zero_determinant = None, False
     names: Mapping[str, Any]

@@ -164,7 +164,7 @@ def complete(values: Mapping[str, Any], source: str | None = None) -> dict[str, 
     """Return the values of a scene in the table's order, M = 6 where it is not given. Raises
     UserError for missing and unknown names."""
     if not isinstance(values, Mapping):
-        raise UserError(f"{values!r:.60} is not a mapping of names to texts", source)
+        raise UserError(f"{type(values).__name__} is not a mapping of names to texts", source)
     check_names(values, SCENE, "value of a scene", source)
     if absent := [name for name in SCENE if name not in values and name != "M"]:
         raise UserError(missing(absent), source)

@@ -235,8 +235,10 @@ def reconstruct(
     Parameters
     ----------
     known : mapping of str to float, str or Amount
-        Known values by name, in one consistent set of units (see `KNOWABLE`). A number is exact; a
-        text such as "41 +- 2" or an `Amount` is known within its tolerance. M is 6 by default.
+        Known values by name, in one consistent set of units: the scene's names, VAX VAY WAF VBX VBY
+        WBF SA SB SAF SBF HA HB HAF HBF PN PT PM MUP DVA DVB DVAF DVAR DVBF DVBR PDOFA PDOFB VC VS
+        KI KF EL ELA ELB EBSA EBSB LOSS DT CAF CAL CBF CBL CX CY. A number is exact; a text such as
+        "41 +- 2" or an `Amount` is known within its tolerance. M is 6 by default.
     samples : int, default 20000
         Random draws of the impacts that physics allows; 0 for none.
     seed : int, default 0

@@ -101,12 +101,13 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     if lacking := [name for name in VEHICLES if name not in values]:
         raise UserError(missing(lacking))
     names = [n for n in UNKNOWNS if n not in values] if unknown is None else list(unknown)
-    check_names(names, UNKNOWNS, "unknown")
+    check_names(names, UNKNOWNS, "value to solve for")
     shape = np.broadcast_shapes(*(x.shape for x in values.values()))
     values = {name: np.broadcast_to(x, shape).ravel() for name, x in values.items()}
     solutions = [_solve(reading, names, shape) for reading in _readings(values)]
     solutions = [solution for solution in solutions if solution.agrees.any()]
-    if not solutions or all(np.isnan(x).all() for x in solutions[0].values.values()):
+    wanted = [name for name in names if name in (*BEFORE, *AFTER)] or names
+    if not solutions or all(np.isnan(solutions[0][name]).all() for name in wanted):
         raise UserError(f"{', '.join(names)} do not follow from what is known")
     return solutions
 
