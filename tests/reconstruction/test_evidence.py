@@ -167,8 +167,8 @@ def test_nearest_impact_within_physics_is_that_of_another_method(number):
         for k in range(6)
     ]
     best = min(end.fun for end in ends if within(end.x).min() > -1e-7)
-    answer = Search(problem, limited=True).run(0, [search.run()[0][0].point])[0]
-    assert min(f.squares for f in answer if f.misfit < 1e-5) == pytest.approx(best, rel=2e-3)
+    answer = Search(problem, limited=True).nearest([search.run()[0][0].point])
+    assert answer.squares == pytest.approx(best, rel=2e-3)
 
 
 def test_what_is_open_and_what_would_help():

@@ -8,7 +8,7 @@ odds with the others has the largest standardized residual (Baarda 1968).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import NormalDist
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
-from .draws import MIN_FAMILIES, Sample, sample
+from .draws import MIN_FAMILIES, Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
@@ -28,7 +28,6 @@ from .problem import ANGLES, RANGES, WIDEST, Problem, signs_of_friction, unwrap_
 
 CONTRADICTION = 1e-3  # probability of a misfit below which values contradict one another
 LIKELY = 9.0  # sum of squares above the least, up to which an impact is shown
-ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
 TIE = 1e-9  # differences in typical sizes that are rounding
 SOFTENED = 0.01  # tolerance of exact values that contradict one another, in typical sizes
 CHECKED = 0.02  # least part of a variance that counts
@@ -37,10 +36,16 @@ MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
-OUTSIDE = "no impact within all limits was found: intervals are to first order"
+OUTSIDE = "random draws found no impact within all limits: intervals are to first order"
+CONDITIONS = {
+    "approach": "VC",
+    "push": "PN",
+    "energy": "EL",
+    "friction": "MUP",
+    "sign of MU": "MUP",
+}
+"""Conditions of physics with the result that they limit, if not their own."""
 ADVERSE = ("impossible", "contradictory")
-BOUNDED = ("SA", "SB", "DVA", "DVB")
-CORRELATED = ("UX", "UY", "VX", "VY", "SA", "SB", "DVA", "DVB", "PDOFA", "PDOFB", "E", "MUP", "EM")
 KNOWABLE = (
     *(name for name in SCENE if name != "M"),
     *AFTER,
@@ -80,7 +85,7 @@ class Test:
     measured, adjusted : float
         The value as measured, and in this impact.
     by_others : float
-        The value that the others alone give it.
+        The value that the others alone give it; NaN if they do not.
     sd : float
         Its standard deviation.
     residual : float
@@ -131,18 +136,15 @@ class Reconstruction:
         Number of impacts that agree with what is known.
     draws : mapping of str to ndarray
         Random draws by result; empty if there are none.
-    bounds : mapping of str to (float, float)
-        Least and greatest values found within all limits.
     evidence : Evidence
         Agreement of the known values.
     laws : tuple of MissedLaw
         All laws that known values violate.
     broken : mapping of str to float
-        Conditions of physics that the impact breaks or lies at, with the amount in typical sizes.
+        Conditions of physics that are broken without limits, or at which the impact lies, with the
+        value of the result that they limit (`CONDITIONS`).
     drivers : mapping of str to mapping of str to float
         Result -> measured value -> share of the variance, largest first.
-    correlations : mapping of (str, str) to float
-        Correlations of results, to first order.
     undetermined : tuple of str
         Results that the known values leave open.
     advice : tuple of str
@@ -173,12 +175,10 @@ class Reconstruction:
     tests: Mapping[str, Test] = field(default_factory=dict)
     solutions: int = 1
     draws: Mapping[str, Array] = field(default_factory=dict)
-    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     evidence: Evidence = Evidence(0.0, 0, 1.0)
     laws: tuple[MissedLaw, ...] = ()
     broken: Mapping[str, float] = field(default_factory=dict)
     drivers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
     undetermined: tuple[str, ...] = ()
     advice: tuple[str, ...] = ()
     excluded: Mapping[str, str] = field(default_factory=dict)
@@ -288,7 +288,7 @@ def reconstruct(
             tests, evidence = _tests(choice.best), _evidence(choice.best)
             results[0] = replace(results[0], tests=tests, evidence=evidence)
         else:  # they agree with each other, but not with physics
-            results[0] = replace(results[0], broken=choice.best.violations())
+            results[0] = replace(results[0], broken=_broken(choice.best, choice.best.violations()))
     if samples and not results[0].is_adverse:
         fits = [fit for fit, _ in choice.fits]
         results = _with_draws(results, fits, samples, seed)
@@ -317,8 +317,9 @@ def _choose(problems: Sequence[Problem], seed: int) -> _Choice:
         fits += minima
         ends += number
     exact = sum(fit.misfit < EXACT_TOL for fit in fits)
-    search = (ends, exact, expected_unseen(exact, ends))
     agreeing = [fit for fit in fits if fit.misfit <= EXACT_TOL and _opposes_sliding(fit)]
+    agreeing = [fit for fit in agreeing if not fit.violations().keys() & {*COURSES}] or agreeing
+    search = (ends, len(agreeing), expected_unseen(exact, ends))
     best = min(agreeing, key=lambda fit: fit.squares, default=None)
     consistent = [fit for fit in agreeing if fit.probability >= CONTRADICTION]
     possible = _in_order([fit for fit in consistent if not fit.violations()])
@@ -343,11 +344,9 @@ def _opposes_sliding(fit: Fit) -> bool:
 
 
 def _in_order(fits: Sequence[Fit]) -> list[Fit]:
-    """Return fits by physics, misfit and energy, without those much worse than the best, and
-    without vehicles that drive backwards along a known course unless all do."""
-    forward = [fit for fit in fits if not driving_backwards(fit)] or list(fits)
-    least = min((fit.squares for fit in forward), default=0.0)
-    likely = [fit for fit in forward if fit.squares <= max(least + LIKELY, TIE)]
+    """Return fits by physics, misfit and energy, without those much worse than the best."""
+    least = min((fit.squares for fit in fits), default=0.0)
+    likely = [fit for fit in fits if fit.squares <= max(least + LIKELY, TIE)]
     return sorted(likely, key=_rank)
 
 
@@ -363,12 +362,6 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
     return (misfit, bool(fit.violations(friction=True)), *ties)
 
 
-def driving_backwards(fit: Fit) -> list[str]:
-    """Return the speeds that are negative along a known course."""
-    speeds = dict(zip(fit.search.names, fit.point, strict=True))
-    return [name for name in SPEEDS if speeds.get(name, 0.0) < -1e-6 * fit.problem.speed]
-
-
 def _nearest(
     problems: Sequence[Problem], fits: Sequence[Fit], best: Fit | None, seed: int
 ) -> tuple[Fit | None, str, bool]:
@@ -381,7 +374,8 @@ def _nearest(
         return fit, "agrees" if fit.squares <= best.squares + 1e-6 else "at a limit", False
     fit = _best_within_limits(problems, fits, True, seed)
     is_rounding = not best and min((fit.misfit for fit in fits), default=1.0) < TYPED_TOL
-    return fit, "agrees" if fit and is_rounding else "contradictory", True
+    agrees = fit and is_rounding and fit.probability >= CONTRADICTION
+    return fit, "agrees" if agrees else "contradictory", True
 
 
 def _best_within_limits(
@@ -396,8 +390,8 @@ def _best_within_limits(
             for fit in fits
             if fit.problem is problem
         ]
-        minima, _ = search.run(seed, [point for point in starts if np.isfinite(point).all()])
-        admissible += [fit for fit in minima if fit.misfit <= ADMISSIBLE_TOL]
+        nearest = search.nearest([point for point in starts if np.isfinite(point).all()], seed)
+        admissible += [nearest] if nearest else []
     return min(admissible, key=lambda fit: fit.squares, default=None)
 
 
@@ -428,11 +422,6 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
                 intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
     vehicles = {name: fit.value(name) for name in VEHICLES}
-    backwards = [
-        f"{name[1]} drives backwards along its known course H{name[1:]}: no impact was found in "
-        "which it does not"
-        for name in driving_backwards(fit)
-    ]
     return Reconstruction(
         values=values | {name: value for name, value in vehicles.items() if math.isfinite(value)},
         intervals=intervals,
@@ -442,11 +431,10 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         evidence=_evidence(fit),
         broken=_conditions(fit, verdict),
         drivers=drivers,
-        correlations=_correlations(slopes),
         undetermined=tuple(open_names),
         advice=_advice(fit, open_names),
         excluded=problem.excluded,
-        remarks=(*problem.remarks, *backwards),
+        remarks=tuple(problem.remarks),
         point=problem.point,
     )
 
@@ -487,10 +475,15 @@ def _without_noise(name: str, value: float, size: float) -> float:
 def _conditions(fit: Fit, verdict: str) -> dict[str, float]:
     """Return the conditions that an impossible impact violates, or at which a limited one lies."""
     if verdict == "impossible":
-        return fit.violations()
+        return _broken(fit, fit.violations())
     if verdict == "at a limit":
-        return {name: 0.0 for name, margin in fit.margins().items() if margin < RESULT_STEP}
+        return _broken(fit, [n for n, margin in fit.margins().items() if margin < RESULT_STEP])
     return {}
+
+
+def _broken(fit: Fit, conditions: Iterable[str]) -> dict[str, float]:
+    """Return conditions with the values of the results that they limit."""
+    return {name: fit.value(CONDITIONS.get(name, name)) for name in conditions}
 
 
 # -- how far the known values agree
@@ -507,10 +500,10 @@ def _tests(fit: Fit) -> dict[str, Test]:
         measurement, sd = item.amount.value, item.sd
         misfit = float(np.ravel(fit.problem.misfit(fit.impacts, item))[0])
         visible = 1.0 - leverage  # part of an error that the adjustment shows
-        if visible <= CHECKED:
-            visible = math.inf  # no other value checks it
-        by_others = measurement + misfit / visible
-        residual = misfit / (sd * math.sqrt(visible)) + 0.0
+        by_others, residual = math.nan, 0.0
+        if visible > CHECKED:
+            by_others = measurement + misfit / visible
+            residual = misfit / (sd * math.sqrt(visible))
         tests[item.name] = Test(measurement, measurement + misfit, by_others, sd, residual)
     return dict(sorted(tests.items(), key=lambda pair: -abs(pair[1].residual)))
 
@@ -536,17 +529,6 @@ def _drivers(fit: Fit, slope: Array) -> dict[str, float]:
     return dict(sorted(large.items(), key=lambda pair: -pair[1]))
 
 
-def _correlations(slopes: Mapping[str, Array]) -> dict[tuple[str, str], float]:
-    """Return correlations of the results that are not determined by exact values alone."""
-    names = [name for name in CORRELATED if name in slopes and slopes[name].any()]
-    unit = {name: slopes[name] / np.sqrt(np.square(slopes[name]).sum()) for name in names}
-    return {
-        (first, second): float((unit[first] * unit[second]).sum())
-        for k, first in enumerate(names)
-        for second in names[:k]
-    }
-
-
 def _advice(fit: Fit, open_names: Sequence[str]) -> tuple[str, ...]:
     """Return values that would determine the results left open: each of them is independent, over
     the open directions, of those named before."""
@@ -567,21 +549,29 @@ def _advice(fit: Fit, open_names: Sequence[str]) -> tuple[str, ...]:
 def _with_draws(
     results: Sequence[Reconstruction], fits: Sequence[Fit], samples: int, seed: int
 ) -> list[Reconstruction]:
-    """Return results with draws, intervals and bounds, where anything varies."""
-    if not any(fit.sensitivity.any() or fit.open_directions.size for fit in fits):
-        return list(results)
-    draws = {
-        problem: sample(problem, samples, seed)
-        for problem in dict.fromkeys(fit.problem for fit in fits)
-        if problem.coordinates
-    }
-    pairs = zip(results, fits, strict=True)
-    return [_with_sample(result, draws.get(fit.problem), seed) for result, fit in pairs]
+    """Return results with draws and their intervals, where anything varies."""
+    draws: dict[Problem, Sample | None] = {}
+    completed = []
+    for result, fit in zip(results, fits, strict=True):
+        if fit.open_directions.size or fit.redundancy:
+            if fit.problem not in draws:
+                draws[fit.problem] = sample(fit.problem, samples, seed)
+            result = _with_sample(result, fit, draws[fit.problem])
+        elif fit.sensitivity.any():
+            result = _with_sample(result, fit, push_forward(fit, samples, seed))
+        completed.append(result)
+    return sorted(completed, key=lambda result: result.is_adverse)
 
 
-def _with_sample(result: Reconstruction, draws: Sample | None, seed: int) -> Reconstruction:
-    """Return a result with the intervals and bounds of draws."""
+def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reconstruction:
+    """Return a result with the intervals of draws; a contradiction if there are none
+    and the impact has values beyond their limits."""
     if draws is None:
+        for item in fit.search.measured:
+            low, high = item.amount.limits()
+            adjusted = result.tests[item.name].adjusted
+            if abs(np.clip(adjusted, low, high) - adjusted) > RESULT_STEP * item.sd:
+                return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
     if draws.families < MIN_FAMILIES:
         remark = (
@@ -597,16 +587,22 @@ def _with_sample(result: Reconstruction, draws: Sample | None, seed: int) -> Rec
         if np.isfinite(column).all():
             columns[name] = column
             if name in result.undetermined or name in intervals:
-                low, high = np.quantile(column, INTERVAL).tolist()
-                intervals[name] = (low, high)
-    names = [name for name in BOUNDED if name in intervals and name in result.values]
+                intervals[name] = _interval(column, result.values.get(name, float(np.median(column))))
     return replace(
         result,
         intervals=intervals,
         draws=columns,
-        bounds=draws.bounds(names, seed) if names else {},
         assumed=_with_ends(result.assumed, columns),
     )
+
+
+def _interval(column: Array, value: float) -> tuple[float, float]:
+    """Return the 90 % interval of draws: between equal tails, or beginning or ending at the value
+    if it would lie outside."""
+    rank = float((column < value).mean())
+    level = float(np.clip(INTERVAL[0], rank - (INTERVAL[1] - INTERVAL[0]), rank))
+    low, high = np.quantile(column, (level, min(level + INTERVAL[1] - INTERVAL[0], 1.0))).tolist()
+    return min(low, value), max(high, value)
 
 
 def _with_ends(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[str, str]:

@@ -49,8 +49,8 @@ class Bound:
         Inputs at which they are attained.
     quantiles : mapping of float to float
         Quantiles of the draws.
-    drivers : mapping of str to (float, float)
-        Input -> rank correlation with the output, and range of the output if only that input
+    drivers : mapping of str to float
+        Input -> range of the output if only that input
         varies; largest range first.
     """
 
@@ -60,7 +60,7 @@ class Bound:
     at_lower: Mapping[str, float]
     at_upper: Mapping[str, float]
     quantiles: Mapping[float, float]
-    drivers: Mapping[str, tuple[float, float]]
+    drivers: Mapping[str, float]
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -201,7 +201,7 @@ def bounds(
     draws = table(inputs_drawn)
     if not np.isfinite(draws).any(0).all() or not np.isfinite(ends).all():
         raise UserError("no scene within these limits has a finite result; expected others")
-    drivers = _drivers(box, table, inputs_drawn, draws)
+    drivers = _drivers(box, table)
     quantiles = np.nanquantile(draws, QUANTILES, axis=0).T.tolist()
     nominal = table(box.nominal)[0].tolist()
     results = {}
@@ -214,10 +214,8 @@ def bounds(
     return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns)
 
 
-def _drivers(
-    box: _Box, table: Callable[[Array], Array], inputs: Array, draws: Array
-) -> list[dict[str, tuple[float, float]]]:
-    """Return for each output the inputs with rank correlation and effect alone, largest first."""
+def _drivers(box: _Box, table: Callable[[Array], Array]) -> list[dict[str, float]]:
+    """Return for each output the inputs with their effect alone, largest first."""
     effects = []
     for k in range(len(box.varied)):
         sweep = np.repeat(box.nominal, SWEEP_POINTS, 0)
@@ -225,11 +223,9 @@ def _drivers(
         results = table(sweep)
         effects.append(np.nanmax(results, 0) - np.nanmin(results, 0))
     drivers = []
-    input_ranks = np.argsort(np.argsort(inputs.T))
-    for column, ranges in zip(draws.T, np.transpose(effects).tolist(), strict=True):
-        correlations = rank_correlations(input_ranks, column).tolist()
-        pairs = zip(box.varied, zip(correlations, ranges, strict=True), strict=True)
-        drivers.append(dict(sorted(pairs, key=lambda pair: -pair[1][1])))
+    for ranges in np.transpose(effects).tolist():
+        pairs = zip(box.varied, ranges, strict=True)
+        drivers.append(dict(sorted(pairs, key=lambda pair: -pair[1])))
     return drivers
 
 
@@ -239,14 +235,3 @@ def _warnings(box: _Box, inputs: Array) -> dict[str, float]:
     bits = results.get("STATUS", np.zeros(1)).astype(int)
     fractions = {s.name or "": float(np.mean(bits & s != 0)) for s in Status}
     return {name: fraction for name, fraction in fractions.items() if fraction}
-
-
-def rank_correlations(ranks: NDArray[np.int_], output: Array) -> Array:
-    """Return Spearman's rank correlation of each input (a row of ranks) with the finite values of
-    an output; 0 for an output that does not vary."""
-    usable = np.isfinite(output)
-    if np.ptp(output[usable]) == 0:
-        return np.zeros(len(ranks))
-    output_ranks = np.argsort(np.argsort(output[usable]))
-    correlations: Array = np.corrcoef(ranks[:, usable], output_ranks)[-1, :-1]
-    return correlations

@@ -9,7 +9,6 @@ affine shape.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..mechanics.laws import MAX_FRICTION
 from .densities import draw, log_density
-from .extremes import extremes
+from .fit import Fit
 from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array, Impacts
 from .problem import RANGES, WIDEST, Known, Problem
 
@@ -68,23 +67,6 @@ class Sample:
         """Return the values of a quantity."""
         return np.broadcast_to(self.impacts[name], len(self.points))
 
-    def bounds(self, names: Sequence[str], seed: int = 0) -> dict[str, tuple[float, float]]:
-        """Return the least and the greatest values found within all limits."""
-        target, rng = self.target, np.random.default_rng([seed, 2])
-        low, high = np.array([item.amount.limits() for item in target.items]).T
-        width = 2.0 * np.ptp(self.points, axis=0)
-        low = np.where(np.isfinite(low), low, self.points.min(0) - width)
-        high = np.where(np.isfinite(high), high, self.points.max(0) + width)
-
-        def table(points: Array) -> Array:
-            state = target(points)
-            impacts = target.impacts(points)
-            is_within = np.isfinite(state.prior) & state.holds
-            return np.stack([np.where(is_within, impacts[name], np.nan) for name in names], 1)
-
-        values, _ = extremes(table, self.points, (low, high), rng)
-        return dict(zip(names, map(tuple, values.T.tolist()), strict=True))
-
 
 class Target:
     """The density of one problem over its coordinates."""
@@ -124,7 +106,7 @@ class Target:
         table = np.stack([*columns.values()], 1)
         impacts = self.problem.impacts([*columns], table)
         with np.errstate(all="ignore"):
-            weights += impacts.log_volume + self.problem.log_polar([*columns], table)
+            weights += self.problem.log_density(impacts)
         rows = (columns[n] if n in columns else impacts[n] for n in self.names)
         return np.stack([np.broadcast_to(row, count) for row in rows], 1), weights
 
@@ -162,7 +144,7 @@ class Target:
             is_allowed &= margin >= 0
         for name in ("UX", "UY", "VX", "VY"):
             is_allowed &= np.abs(impacts[name]) <= WIDEST * self.problem.speed
-        volume = impacts.log_volume + self.problem.log_polar(self.names, points)
+        volume = self.problem.log_density(impacts)
         return np.where(is_allowed & np.isfinite(volume), volume, -np.inf)
 
 
@@ -220,6 +202,22 @@ def sample(
     sizes = np.bincount(family)
     families = float(sizes.sum() ** 2 / (sizes**2).sum())
     return Sample(target, np.concatenate(points)[:count], families)
+
+
+def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
+    """Return draws around an impact that as many values determine as are known: each value is drawn
+    from its own density. Draws that physics forbids do not count; None if few are left."""
+    rng = np.random.default_rng([seed, 1])
+    search, target = fit.search, Target(fit.problem)
+    columns = [
+        (draw(item.amount, count, rng) - item.amount.value) / item.sd for item in search.measured
+    ]
+    points, is_impact = search.follow(fit.point, np.stack(columns, 1))
+    points = points[is_impact]
+    impacts = target.impacts(points)
+    is_allowed = np.all([row >= 0 for _, row in fit.problem.margins(impacts)], axis=0)
+    points = points[is_allowed]
+    return Sample(target, points, len(points)) if len(points) >= MIN_FAMILIES else None
 
 
 def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | None:

@@ -24,11 +24,15 @@ BATCH = 120  # starts at a time
 MAX_STARTS = 480
 MAX_UNSEEN = 0.05  # expected number of minima not seen, at which starts end
 MAX_IMPACTS = 24
+MOVED = 1e-6  # sum of squares above which values were adjusted
 RIDGE = 0.1  # sum of squares that separates two minima
 STAGES = ((1e-2, 12), (1e-4, 12), (1e-6, 16))  # tolerance of exact values, in sizes; iterations
 EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
+ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
+POLISHED = 8  # ends of iterations within limits that are polished; the least of them counts
 CANDIDATE_TOL = 1e-4  # misfit at which iterations end near an impact
+NEWTON_STEPS = 10  # from an impact to one whose known values differ within their limits
 STEP = 1e-7  # of difference quotients; smaller slopes and excesses are rounding
 RESULT_STEP = 1e-6  # of those of results, in typical sizes; a smaller slope is rounding
 
@@ -75,8 +79,9 @@ class Fit:
 
     @property
     def redundancy(self) -> int:
-        """Number of measured values more than needed."""
-        return len(self.search.measured) - self.rank
+        """Number of measured values more than needed; at least one where values had to move: a
+        limit takes away a degree of freedom."""
+        return max(len(self.search.measured) - self.rank, int(self.squares > MOVED))
 
     @property
     def probability(self) -> float:
@@ -258,6 +263,24 @@ class Search:
         # a step that crosses a limit again does not count
         return point if after <= before or after < EXACT_TOL else start
 
+    def follow(self, point: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Return impacts whose measured values differ from those at a point by ``moves`` (rows, in
+        standard deviations), and whether Newton's method ended in one; as many values are measured
+        as determine an impact."""
+        count, d = len(moves), len(point)
+        points = np.tile(point / self.sizes, (count, 1))
+        target = np.pad(moves, ((0, 0), (0, len(self.hard))))
+        off = target
+        for _ in range(NEWTON_STEPS):
+            residual = np.concatenate(self.residuals(points), 1)
+            off = residual - target
+            beside = np.concatenate(self._residuals_beside(points, STEP * np.eye(d)), 1)
+            slope = (beside - residual[:, :, None]) / STEP
+            step = -(np.linalg.pinv(slope) @ off[..., None])[..., 0]
+            length = np.maximum(np.abs(step).max(1, keepdims=True), 1e-300)
+            points = points + step * np.minimum(1.0, 1.0 / length)
+        return points * self.sizes, np.abs(off).max(1) < CANDIDATE_TOL
+
     def describe(self, point: Array) -> Fit:
         """Return a minimum with what it leaves open and what it depends on."""
         soft, hard = self.residuals(point[None])
@@ -286,23 +309,36 @@ class Search:
             settled=np.all(np.abs(changes) < 1e-9, axis=1),
         )
 
-    def run(self, seed: int = 0, first: Sequence[Array] = ()) -> tuple[list[Fit], int]:
-        """Return all minima found, the best first, and the number of starts that led to one.
-
-        ``first``: points to start from, in place of random ones only."""
+    def run(self, seed: int = 0) -> tuple[list[Fit], int]:
+        """Return all minima found, the best first, and the number of starts that led to one."""
         if not self.names:
             return [self.describe(self.polish(np.empty(0)))], 1
         rng = np.random.default_rng(seed)
         fits: list[Fit] = []
         ends = 0
         for _ in range(MAX_STARTS // BATCH):
-            starts = self._near(first, rng) if first else self.starts(BATCH, rng)
-            ends += self._collect(self.descend(starts), fits)
+            ends += self._collect(self.descend(self.starts(BATCH, rng)), fits)
             count = sum(fit.misfit < EXACT_TOL for fit in fits)
             unseen = expected_unseen(count, ends) if ends else 0.0
-            if first or len(fits) == MAX_IMPACTS or unseen < MAX_UNSEEN:
+            if len(fits) == MAX_IMPACTS or unseen < MAX_UNSEEN:
                 break
         return sorted(fits, key=lambda fit: (fit.misfit > EXACT_TOL, fit.squares)), ends
+
+    def nearest(self, first: Sequence[Array], seed: int = 0) -> Fit | None:
+        """Return the least minimum at which exact values and limits hold, from points, others
+        around them and random ones; None if there is none."""
+        rng, points = np.random.default_rng(seed), np.empty((1, 0))
+        if self.names:
+            near = np.array(first).reshape(-1, len(self.names)) / self.sizes
+            around = np.repeat(near, 2, 0)
+            around += rng.normal(0, 0.1, around.shape)
+            points = self.descend(np.concatenate([near, around, self.starts(BATCH, rng)]))
+        soft, hard = self.residuals(points)
+        is_far = np.abs(hard).max(1, initial=0.0) >= CANDIDATE_TOL
+        order = np.lexsort([(soft**2).sum(1), is_far])[:POLISHED]
+        fits = [self.describe(self.polish(points[k])) for k in order]
+        admissible = [fit for fit in fits if fit.misfit <= ADMISSIBLE_TOL]
+        return min(admissible, key=lambda fit: fit.squares, default=None)
 
     def _collect(self, ends: Array, fits: list[Fit]) -> int:
         """Add the minima at ends of iterations to ``fits``; return the number of those ends."""
@@ -316,14 +352,6 @@ class Search:
                 if not self._is_seen(fits, fit.point / self.sizes, 1e-6):
                     fits.append(fit)
         return int((~is_far).sum())
-
-    def _near(self, first: Sequence[Array], rng: np.random.Generator) -> Array:
-        """Return points, others around them, and random ones."""
-        points = np.stack(first) / self.sizes
-        around = np.repeat(points, 2, 0)
-        return np.concatenate(
-            [points, around + rng.normal(0, 0.1, around.shape), self.starts(40, rng)]
-        )
 
     def _is_seen(self, fits: list[Fit], point: Array, close: float) -> bool:
         """Return True for a point that leads to an impact in ``fits``: one equal in all that is

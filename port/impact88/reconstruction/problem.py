@@ -120,6 +120,8 @@ class Problem:
             for name, amount in known.items()
             if name not in names
         ]
+        self.lines = [n for n in COURSES if n in known and (n in names or not known[n].varies)]
+        self.powers = self._powers_of_speeds(names)
         self.needed = (*MARGIN_INPUTS, *(item.name for item in self.observed))
 
     # -- what is known, completed
@@ -333,6 +335,8 @@ class Problem:
         ]
         is_late = vehicle == "B" and any(name in FINAL for name in self.frames["A"])
         is_early = vehicle in self._turns_with_course or (is_late and not self._leaves("E", "MUP"))
+        # a course is smooth where the vehicle stops only as a coordinate
+        is_early = is_early or (course in self.known and self.known[course].varies)
         frames = before if is_early else after
         return max(frames, key=lambda names: sum(scores.get(name, 0) for name in names))
 
@@ -415,17 +419,33 @@ class Problem:
                 _, course = _polar(values[x], values[y])
                 values["T" + vehicle] = course + FACING[vehicle]
 
-    def log_polar(self, names: list[str], points: Array) -> Any:
-        """Return the log of the area per unit of polar coordinates."""
-        total: Any = 0.0
-        for frame in self.frames.values():
-            if frame[0] in SPEEDS and frame[0] in names:
-                total = total + np.log(np.abs(points[:, names.index(frame[0])]) + 1e-300)
+    def _powers_of_speeds(self, names: set[str]) -> dict[str, int]:
+        """Return the powers of speeds in the flat density over the coordinates ``names``.
+
+        It is flat over a speed and a course before the impact if one of them is known, else over
+        components; of the coordinates' polar area and of misfits across a line come the others."""
+        polar = {frame[0] for frame in self.frames.values()}
+        return {
+            speed: (speed in polar)
+            + (course in self.lines and course not in names)
+            - (course in ("HA", "HB") and not self.known.keys().isdisjoint((speed, course)))
+            for course, speed in COURSES.items()
+        }
+
+    def log_density(self, impacts: Impacts) -> Any:
+        """Return the log of the flat density of impacts, per unit of the coordinates."""
+        total = impacts.log_volume
+        for speed, power in self.powers.items():
+            if power:
+                total = total + power * np.log(impacts[speed] + 1e-300)
         return total
 
     def misfit(self, impacts: Impacts, item: Known) -> Any:
-        """Return observed quantities less what was measured; angles within half a turn."""
+        """Return observed quantities less what was measured: angles within half a turn, but the
+        velocity across the line of an exact course, which is smooth where the vehicle stops."""
         off = impacts[item.name] - item.amount.value
+        if item.name in self.lines and not item.sd:
+            return item.size * np.sin(np.radians(off)) * impacts[COURSES[item.name]] / self.speed
         return (off + 180.0) % 360.0 - 180.0 if item.name in ANGLES else off
 
     # -- conditions
@@ -434,12 +454,18 @@ class Problem:
     def margins(self, impacts: Impacts, friction: bool = True) -> list[tuple[str, Any]]:
         """Return how far impacts lie within what physics allows, by condition, in typical sizes.
 
-        The vehicles approach, push and gain no energy; e, e_m and friction that are not given lie
-        in their ranges (`mechanics.laws`)."""
+        The vehicles travel along their courses, approach, push and gain no energy; e, e_m and
+        friction that are not given lie in their ranges (`mechanics.laws`)."""
+        rows: list[tuple[str, Any]] = []
+        for course in self.lines:
+            speed = COURSES[course]
+            if speed not in self.known or self.known[speed].value > 0:
+                along = np.cos(np.radians(impacts[course] - self.known[course].value))
+                rows.append((course, impacts[speed] * along / self.speed + TOUCH))
         if self.without_arms:
-            return []
+            return rows
         inside = margins(impacts.values, self.scale)
-        rows = [("energy", inside["energy"][0] + ENERGY_TOLERANCE)]
+        rows.append(("energy", inside["energy"][0] + ENERGY_TOLERANCE))
         if self.without_plane:
             return rows
         # the contact plane of points has no sides

@@ -6,13 +6,13 @@ would help.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from ..cases.units import PLAIN, View
 from ..mechanics.laws import BROKEN
 from ..names import quantity
-from .answer import CONTRADICTION, MAX_NAMED, OUTSIDE, Reconstruction
-from .impacts import SPEEDS
+from .answer import CONDITIONS, CONTRADICTION, MAX_NAMED, OUTSIDE, Reconstruction
+from .impacts import COURSES, SPEEDS
 from .laws import MissedLaw
 from .problem import CRUSH
 
@@ -20,13 +20,6 @@ POOR = 0.05  # probability below which values agree poorly
 LARGEST = 0.5  # share of a variance from which a value is named as what would help
 ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
 """Results that advice names."""
-CONDITIONS = {
-    "approach": "VC",
-    "push": "PN",
-    "energy": "EL",
-    "friction": "MUP",
-}
-"""Conditions of physics with the result that shows by how much it is violated, if not their own."""
 SOURCES = {"EL": CRUSH, "MUP": ("MU",)}
 """Measured values with the entries that they may come from."""
 VERDICTS = {
@@ -74,11 +67,12 @@ def _entries(result: Reconstruction, name: str) -> list[str]:
     return [part for part in (name, *SOURCES.get(name, ())) if part in result.known]
 
 
-def question(result: Reconstruction) -> str:
-    """Return what is asked, from how many values."""
+def question(result: Reconstruction, derived: Collection[str] = ()) -> str:
+    """Return what is asked, from how many values; ``derived`` ones are not counted."""
     known = result.known
     within_limits = [name for name in known if known[name].varies]
-    exact = len(known) - len(within_limits)
+    exact = sum(a.value == a.value for n, a in known.items() if n not in derived)
+    exact -= len(within_limits)
     asked = [name for name in ("SA", "SB") if _is_asked(result, name)]
     asked += [n for n in ("E", "MUP", "EM") if n in result.assumed and n not in known]
     parts = [f"{_join(within_limits)} within limits"] if within_limits else []
@@ -123,29 +117,22 @@ def check(result: Reconstruction, name: str, view: View = PLAIN) -> str:
     """Return a known value beside the others."""
     test = result.tests[name]
     given, others = (number(name, x, view) for x in (test.measured, test.by_others))
-    distance = _distance(result, name, test.by_others)
+    distance = _distance(result, name, abs(test.residual))
     return f"{entry(result, name)} {given} given, {others} by the others{distance}"
 
 
-def _distance(result: Reconstruction, name: str, value: float) -> str:
-    """Return how far a value is from the given one in its standard deviations, "" if exact."""
-    test = result.tests[name]
+def _distance(result: Reconstruction, name: str, distance: float) -> str:
+    """Return a distance in standard deviations, "" for an exact value."""
     if not any(result.known[part].varies for part in _entries(result, name)):
         return ""
-    return f" ({abs(value - test.measured) / test.sd:.1f} sd)"
+    return f" ({distance:.1f} sd)"
 
 
 def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     """Return why no impact agrees, and which values would have to move how far; "" if one does."""
     text = VERDICTS[result.verdict]
-    conditions = []
-    for condition in result.broken:
-        words = BROKEN.get(condition, "friction would act along the sliding")
-        name = CONDITIONS.get(condition, condition)
-        if name in result.values and result.verdict == "impossible":
-            words += f" ({name} {number(name, result.values[name], view)})"
-        conditions.append(words)
-    if conditions:
+    if result.broken:
+        conditions = [_broken(result, name, view) for name in result.broken]
         text += f": {'; '.join(conditions)}"
     moves = {n: abs(t.adjusted - t.measured) / t.sd for n, t in result.tests.items()}
     farthest = sorted((name for name in moves if moves[name] >= 1.0), key=lambda n: -moves[n])
@@ -155,10 +142,26 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     return text
 
 
+def _broken(result: Reconstruction, condition: str, view: View) -> str:
+    """Return what would be the case where a condition of physics is violated."""
+    name = CONDITIONS.get(condition, condition)
+    value = result.broken[condition]
+    text = number(name, value, view)
+    if name in COURSES:
+        return f"{name[1]} would travel against its course {name}"
+    if name == "E" and name in result.excluded:
+        end = "pass through each other" if value < 0 else "separate faster than they met"
+        return (
+            f"with the contact normal along the impulse E would be {text}: the vehicles would {end}"
+        )
+    words = BROKEN.get(condition, "friction would act along the sliding")
+    return f"{words} ({name} {text})" if result.is_adverse else words
+
+
 def _move(result: Reconstruction, name: str, view: View) -> str:
     test = result.tests[name]
     adjusted, measured = (number(name, x, view) for x in (test.adjusted, test.measured))
-    distance = _distance(result, name, test.adjusted)
+    distance = _distance(result, name, abs(test.adjusted - test.measured) / test.sd)
     return f"{entry(result, name)} at {adjusted}, not {measured}{distance}"
 
 
@@ -200,6 +203,11 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
             f"{starts} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected "
             f"number not seen {unseen:.2g}"
         )
+        if impacts > result.solutions > 0:
+            lines.append(
+                f"{impacts - result.solutions} left out: against physics or the sense of the "
+                "friction, or far less likely"
+            )
     for reason in dict.fromkeys(result.excluded.values()):
         names = [name for name in result.excluded if result.excluded[name] == reason]
         verb = "need" if len(names) > 1 else "needs"

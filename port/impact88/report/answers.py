@@ -228,7 +228,7 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         if bound.upper - bound.lower > NOISE * abs(bound.nominal)
     }
     squares = {
-        name: {n: effect * effect for n, (_, effect) in bound.drivers.items()}
+        name: {n: effect * effect for n, effect in bound.drivers.items()}
         for name, bound in varying.items()
     }
     warnings = [
@@ -343,7 +343,9 @@ def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
         raise UserError(str(error), case.source) from None
     first, *alternatives = [_impact(case, impact, names) for impact in impacts]
     reasons = [answer.warnings[0] for answer in alternatives if first.possible > answer.possible]
-    refusals = tuple(reason.partition(": ")[2] or reason for reason in reasons)
+    refusals = tuple(
+        f"another impact that agrees with the values: {reason.partition(': ')[2]}" for reason in reasons
+    )
     return replace(
         first,
         sections={**first.sections, "rejected": refusals},
@@ -362,7 +364,7 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         if not impact.is_adverse:
             bits = int(evaluate(impact.scene(), ("STATUS",))[0]["STATUS"])
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
-    tests = impact.tests if impact.evidence.redundancy else ()
+    tests = [name for name, test in impact.tests.items() if math.isfinite(test.by_others)]
     results = [name for name in names if name in values or name in impact.intervals]
     fractions = {
         result: {words.entry(impact, name): x for name, x in parts.items()}
@@ -371,7 +373,7 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
     }
     return Answer(
         "reconstruct",
-        words.question(impact),
+        words.question(impact, case.derived),
         given_of(case),
         numbers_of(case, {n: values.get(n, math.nan) for n in results}, impact.intervals),
         case,

@@ -131,7 +131,7 @@ def case_page(answer: Answer) -> str:
         answer=answer,
         drawing=drawing,
         undrawn=undrawn,
-        exact=[n for n in case.entries if n not in (*case.ranges, "M")],
+        exact=[n for n in case.entries if n not in (*case.ranges, *case.derived, "M")],
         method=(IMPACT, METHODS[answer.asked]),
         not_judged=NOT_JUDGED,
         digest=sha256(case.toml().encode()).hexdigest(),
