@@ -27,6 +27,8 @@ MAX_IMPACTS = 24
 MOVED = 1e-6  # sum of squares above which values were adjusted
 RIDGE = 0.1  # sum of squares that separates two minima
 STAGES = ((1e-2, 12), (1e-4, 12), (1e-6, 16))  # tolerance of exact values, in sizes; iterations
+LIMITED_STAGES = ((1e-1, 12), (1e-2, 12), (1e-3, 12), (1e-4, 12), (1e-6, 16))
+"""The same within limits, whose bends stop wider steps."""
 EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
 ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
@@ -208,7 +210,8 @@ class Search:
         """Return the ends of Levenberg-Marquardt iterations."""
         has_both = self.measured and (self.hard or self.limited)
         last = (STAGES[-1][0], sum(iterations for _, iterations in STAGES))
-        for tolerance, iterations in STAGES if has_both else (last,):
+        stages = LIMITED_STAGES if self.limited else STAGES
+        for tolerance, iterations in stages if has_both else (last,):
             damping = np.full(len(points), 1e-2)
             residual = self._all_residuals(points, tolerance)
             for _ in range(iterations):
@@ -332,7 +335,7 @@ class Search:
             near = np.array(first).reshape(-1, len(self.names)) / self.sizes
             around = np.repeat(near, 2, 0)
             around += rng.normal(0, 0.1, around.shape)
-            points = self.descend(np.concatenate([near, around, self.starts(BATCH, rng)]))
+            points = self.descend(np.concatenate([near, around, self.starts(BATCH // 2, rng)]))
         soft, hard = self.residuals(points)
         is_far = np.abs(hard).max(1, initial=0.0) >= CANDIDATE_TOL
         order = np.lexsort([(soft**2).sum(1), is_far])[:POLISHED]
