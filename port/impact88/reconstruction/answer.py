@@ -19,7 +19,7 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
-from .draws import MIN_FAMILIES, Sample, push_forward, sample
+from .draws import Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
@@ -36,7 +36,7 @@ MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
-OUTSIDE = "random draws found no impact within all limits: intervals are to first order"
+OUTSIDE = "too few random draws lie within all limits: intervals are to first order"
 CONDITIONS = {
     "approach": "VC",
     "push": "PN",
@@ -573,12 +573,6 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
             if abs(np.clip(adjusted, low, high) - adjusted) > RESULT_STEP * item.sd:
                 return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
-    if draws.families < MIN_FAMILIES:
-        remark = (
-            f"the draws tell no more than {draws.families:.0f} independent ones would: intervals "
-            "are to first order; narrower tolerances help"
-        )
-        return replace(result, remarks=(*result.remarks, remark))
     columns, intervals = {}, dict(result.intervals)
     for name in result_names(draws.target.problem):
         if name not in result.values and name not in result.undetermined:
@@ -587,7 +581,9 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         if np.isfinite(column).all():
             columns[name] = column
             if name in result.undetermined or name in intervals:
-                intervals[name] = _interval(column, result.values.get(name, float(np.median(column))))
+                intervals[name] = _interval(
+                    column, result.values.get(name, float(np.median(column)))
+                )
     return replace(
         result,
         intervals=intervals,

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..cases.amounts import Amount
 from ..cases.motion import contact_point, line_of_motion
@@ -45,20 +44,15 @@ class Bound:
         The value at the nominal inputs.
     lower, upper : float
         Least and greatest values found within all limits.
-    at_lower, at_upper : mapping of str to float
-        Inputs at which they are attained.
     quantiles : mapping of float to float
         Quantiles of the draws.
     drivers : mapping of str to float
-        Input -> range of the output if only that input
-        varies; largest range first.
+        Input -> range of the output if only that input varies; largest range first.
     """
 
     nominal: float
     lower: float
     upper: float
-    at_lower: Mapping[str, float]
-    at_upper: Mapping[str, float]
     quantiles: Mapping[float, float]
     drivers: Mapping[str, float]
 
@@ -86,8 +80,8 @@ class Bounds:
     Examples
     --------
     >>> answer = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, "LOSS", samples=100)
-    >>> round(answer.outputs["LOSS"].lower, 2), answer.outputs["LOSS"].at_lower
-    (52.93, {'MU': 0.7})
+    >>> round(answer.outputs["LOSS"].lower, 2)
+    52.93
     """
 
     inputs: Mapping[str, Amount]
@@ -194,7 +188,7 @@ def bounds(
 
     rng = np.random.default_rng([seed, 0])
     seeds = np.concatenate([box.nominal, box_seeds(box.low, box.high, rng)])
-    ends, points = extremes(table, seeds, (box.low, box.high), rng)
+    ends = extremes(table, seeds, (box.low, box.high), rng)
     inputs_drawn = draw_correlated(
         box.varied, samples, np.random.default_rng([seed, 1]), correlations or {}
     )
@@ -206,10 +200,9 @@ def bounds(
     nominal = table(box.nominal)[0].tolist()
     results = {}
     for k, name in enumerate(names):
-        at_lower, at_upper = (dict(zip(box.varied, p.tolist(), strict=True)) for p in points[:, k])
         lower, upper = ends[:, k].tolist()
         levels = dict(zip(QUANTILES, quantiles[k], strict=True))
-        results[name] = Bound(nominal[k], lower, upper, at_lower, at_upper, levels, drivers[k])
+        results[name] = Bound(nominal[k], lower, upper, levels, drivers[k])
     columns = dict(zip(names, draws.T, strict=True))
     return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns)
 

@@ -201,6 +201,8 @@ def sample(
         points.append(state.points[state.holds])
     sizes = np.bincount(family)
     families = float(sizes.sum() ** 2 / (sizes**2).sum())
+    if families < MIN_FAMILIES:
+        return None
     return Sample(target, np.concatenate(points)[:count], families)
 
 

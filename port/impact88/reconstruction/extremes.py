@@ -18,8 +18,6 @@ POPULATION = 48
 GENERATIONS = 120
 FACTOR = (0.3, 0.9)  # of a difference, from and to (Storn and Price 1997)
 CROSSOVER = 0.9
-SINGLE = 3  # every third generation changes one coordinate alone
-NEAR = 0.02  # standard deviation of such a change, over the width of the box
 MAX_CORNERS = 1 << 12
 INSIDE = 2000  # points inside of a box that a population starts from
 
@@ -29,8 +27,8 @@ def extremes(
     seeds: Array,
     box: tuple[Array, Array],
     rng: np.random.Generator,
-) -> tuple[Array, Array]:
-    """Return the least and the greatest values of several outputs, and where they are.
+) -> Array:
+    """Return the least and the greatest values of several outputs.
 
     Parameters
     ----------
@@ -46,10 +44,8 @@ def extremes(
 
     Returns
     -------
-    values : ndarray
+    ndarray
         Shape (2, outputs): least and greatest values.
-    points : ndarray
-        Shape (2, outputs, coordinates): where they are attained.
     """
 
     def heights_of(points: Array) -> Array:
@@ -61,14 +57,12 @@ def extremes(
     points, heights = seeds[order], np.take_along_axis(table, order, 1)
     m, n, d = points.shape
     rows, columns = np.arange(m)[:, None], np.arange(n)
-    for generation in range(1, GENERATIONS + 1):
+    for _ in range(GENERATIONS):
         first, second = rng.integers(0, n, (2, m, n))
         factor = rng.uniform(*FACTOR, (m, n, 1))
         mutant = points + factor * (
             points[:, :1] - points + points[rows, first] - points[rows, second]
         )
-        if generation % SINGLE == 0:
-            mutant = _one_coordinate_moved(points.reshape(m * n, d), box, rng).reshape(m, n, d)
         trial = np.clip(np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points), *box)
         new = heights_of(trial.reshape(m * n, d)).reshape(m, n, m)[rows, columns, rows]
         is_better = new > heights
@@ -76,20 +70,7 @@ def extremes(
         order = np.argsort(-heights, axis=1, kind="stable")
         points, heights = points[rows, order], np.take_along_axis(heights, order, 1)
     values = heights[:, 0].reshape(2, m // 2)
-    return np.stack([-values[0], values[1]]), points[:, 0].reshape(2, m // 2, d)
-
-
-def _one_coordinate_moved(
-    points: Array, box: tuple[Array, Array], rng: np.random.Generator
-) -> Array:
-    """Return points with one coordinate at an end of the box, or near its present value."""
-    low, high = box
-    n, d = points.shape
-    rows, columns = np.arange(n), rng.integers(0, d, n)
-    nearby = points[rows, columns] + rng.normal(0, NEAR, n) * (high - low)[columns]
-    result = points.copy()
-    result[rows, columns] = np.choose(rng.integers(0, 3, n), [low[columns], high[columns], nearby])
-    return result
+    return np.stack([-values[0], values[1]])
 
 
 def box_seeds(low: Array, high: Array, rng: np.random.Generator) -> Array:

@@ -279,9 +279,12 @@ class Search:
             off = residual - target
             beside = np.concatenate(self._residuals_beside(points, STEP * np.eye(d)), 1)
             slope = (beside - residual[:, :, None]) / STEP
-            step = -(np.linalg.pinv(slope) @ off[..., None])[..., 0]
-            length = np.maximum(np.abs(step).max(1, keepdims=True), 1e-300)
-            points = points + step * np.minimum(1.0, 1.0 / length)
+            square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(d)
+            gradient = slope.swapaxes(1, 2) @ off[..., None]
+            step = -np.linalg.solve(square, gradient)[..., 0]
+            points = points + np.clip(step, -1.0, 1.0)
+            if (np.abs(step).max(1) < STEP).mean() > 0.99:
+                break
         return points * self.sizes, np.abs(off).max(1) < CANDIDATE_TOL
 
     def describe(self, point: Array) -> Fit:

@@ -343,9 +343,8 @@ def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
         raise UserError(str(error), case.source) from None
     first, *alternatives = [_impact(case, impact, names) for impact in impacts]
     reasons = [answer.warnings[0] for answer in alternatives if first.possible > answer.possible]
-    refusals = tuple(
-        f"another impact that agrees with the values: {reason.partition(': ')[2]}" for reason in reasons
-    )
+    rejected = "another impact that agrees with the values, rejected"
+    refusals = tuple(f"{rejected}: {reason.partition(': ')[2]}" for reason in reasons)
     return replace(
         first,
         sections={**first.sections, "rejected": refusals},
