@@ -6,6 +6,7 @@ would help.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 
 from ..cases.units import PLAIN, View
@@ -111,6 +112,12 @@ def evidence(result: Reconstruction, view: View = PLAIN) -> str:
 def _law(law: MissedLaw, view: View) -> str:
     amount = number(law.like, law.amount, view).lstrip("-")
     return f"{law.law} misses by {amount} ({100 * law.relative:.2g} % of its largest term)"
+
+
+def checks(result: Reconstruction, view: View = PLAIN) -> tuple[str, ...]:
+    """Return the known values that others check, beside them, a phrase each."""
+    names = [name for name, test in result.tests.items() if math.isfinite(test.by_others)]
+    return tuple(check(result, name, view) for name in names)
 
 
 def check(result: Reconstruction, name: str, view: View = PLAIN) -> str:

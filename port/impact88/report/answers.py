@@ -343,8 +343,10 @@ def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
         raise UserError(str(error), case.source) from None
     first, *alternatives = [_impact(case, impact, names) for impact in impacts]
     reasons = [answer.warnings[0] for answer in alternatives if first.possible > answer.possible]
-    rejected = "another impact that agrees with the values, rejected"
-    refusals = tuple(f"{rejected}: {reason.partition(': ')[2]}" for reason in reasons)
+    refusals = tuple(
+        "another impact that agrees with the values, rejected: " + reason.partition(": ")[2]
+        for reason in reasons
+    )
     return replace(
         first,
         sections={**first.sections, "rejected": refusals},
@@ -363,7 +365,6 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         if not impact.is_adverse:
             bits = int(evaluate(impact.scene(), ("STATUS",))[0]["STATUS"])
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
-    tests = [name for name, test in impact.tests.items() if math.isfinite(test.by_others)]
     results = [name for name in names if name in values or name in impact.intervals]
     fractions = {
         result: {words.entry(impact, name): x for name, x in parts.items()}
@@ -380,7 +381,7 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
         possible=not impact.is_adverse,
         sections={
             "depends": _dependences(fractions),
-            "checked": tuple(words.check(impact, name, view) for name in tests),
+            "checked": words.checks(impact, view),
             "assumed": words.assumptions(impact),
             "helps": words.advice(impact),
         },
