@@ -14,7 +14,6 @@ exit status: 0 every result agrees; 1 something disagrees or was not compared; 2
 
 from __future__ import annotations
 
-from ..files import display_name
 from . import options
 from .options import flag, option
 from .output import show
@@ -45,6 +44,6 @@ def main(args: options.Args) -> int:
     )
     if args.junit:
         with options.printing_to(args.junit):
-            print(as_junit(comparison, display_name(args.theirs)), end="")
+            print(as_junit(comparison, args.theirs), end="")
     show(args.json, "compare", as_json(comparison), [as_text(comparison)])
     return int(not comparison.passed)

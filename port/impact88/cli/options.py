@@ -91,7 +91,7 @@ TARGET = option(
 def check_files(args: Args) -> None:
     """Raise UserError if a file to write is also read, or written twice."""
     inputs = ["-"]
-    outputs: dict[str, str | None] = {}
+    outputs: dict[str, str] = {}
     for name, value in vars(args).items():
         paths = value if isinstance(value, list) else [value]
         inputs += [path for path in paths if isinstance(path, InputPath)]

@@ -14,7 +14,7 @@ exit status: 0 every line answered; 1 some could not be used; 2 no usable input"
 from __future__ import annotations
 
 from ..errors import UserError, library
-from ..files import display_name, open_bytes
+from ..files import open_bytes
 from .options import OUTPUT, Args, InputPath, flag, option
 from .output import progress, to_json
 
@@ -53,8 +53,5 @@ def main(args: Args) -> int:
             print(to_json(answer), flush=True)  # a program may ask line by line
             update(answers, None)
     if not answers:
-        form = '{"id": 1, "scene": {...}}'
-        raise UserError(
-            f"no line can be used; expected lines such as {form}", display_name(args.scenes)
-        )
+        raise UserError('no line can be used; expected lines such as {"id": 1, "scene": {...}}')
     return int(failures > 0)
