@@ -273,7 +273,6 @@ class Search:
         count, d = len(moves), len(point)
         points = np.tile(point / self.sizes, (count, 1))
         target = np.pad(moves, ((0, 0), (0, len(self.hard))))
-        off = target
         for _ in range(NEWTON_STEPS):
             residual = np.concatenate(self.residuals(points), 1)
             off = residual - target
