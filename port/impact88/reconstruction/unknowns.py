@@ -106,7 +106,7 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     values = {name: np.broadcast_to(x, shape).ravel() for name, x in values.items()}
     solutions = [_solve(reading, names, shape) for reading in _readings(values)]
     solutions = [solution for solution in solutions if solution.agrees.any()]
-    wanted = [name for name in names if name in (*BEFORE, *AFTER)] or names
+    wanted = [name for name in names if name in MOTION] or names
     if not solutions or all(np.isnan(solutions[0][name]).all() for name in wanted):
         raise UserError(f"{', '.join(names)} do not follow from what is known")
     return solutions
