@@ -32,7 +32,7 @@ HAF = 0
 
 
 def test_intersection_of_the_guide():
-    result = reconstruct(INTERSECTION)[0]
+    result = reconstruct(INTERSECTION, samples=0)[0]
     assert question(result) == "SA and SB, from 8 exact values"
     assert evidence(result) == "not checked: no more is known than needed"
     assert assumptions(result) == ("A faces the way it travels", "B faces the way it travels")
@@ -53,7 +53,7 @@ def test_rear_end_and_skids_of_the_guide():
 
 
 def test_section_vii_in_words():
-    result = reconstruct(SECTION_VII)[0]
+    result = reconstruct(SECTION_VII, samples=4000)[0]
     assert question(result) == (
         "SA, SB, E, MUP and EM, from VAX, VAY, VBX and VBY within limits and 13 exact values"
     )
@@ -67,7 +67,7 @@ def test_section_vii_in_words():
 def test_units_of_the_view():
     metric = {"SA": "20 +- 1 km/h", "DVA": "11 +- .5 km/h", "DVB": "12 +- .5 km/h"}
     case = Case.of({**RECORDER, "MA": "950 kg", "MB": "770 kg", **metric}, view=View("metric"))
-    result = reconstruct(case.entries)[0]
+    result = reconstruct(case.entries, samples=0)[0]
     assert "DVA 11 km/h given, " in check(result, "DVA", case.view)
 
 
@@ -82,7 +82,8 @@ def test_messages_name_the_entries_behind_a_value():
 
 
 def test_a_heading_follows_an_unknown_course():
-    result = reconstruct(Case.of({**SECTION_VII, "TA": "course", "TB": "course"}).entries)[0]
+    case = Case.of({**SECTION_VII, "TA": "course", "TB": "course"})
+    result = reconstruct(case.entries, samples=0)[0]
     assert result.verdict == "agrees"
     assert result.values["TA"] % 360 == pytest.approx((result.values["HA"] + 180) % 360)
     assert result.values["SA"] == pytest.approx(40.2083, abs=1e-3)
