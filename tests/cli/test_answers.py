@@ -67,7 +67,8 @@ def test_exact_entries_are_given_not_found() -> None:
 
 def test_tolerances_are_checked_against_each_other() -> None:
     sentences = ask(Case.loads(RECORDER)).sections["checked"]
-    assert {text.split()[0] for text in sentences} == {"DVA", "DVB", "SA"}
+    # the masses tie both changes of velocity; nothing checks SA, since E is open
+    assert {text.split()[0] for text in sentences} == {"DVA", "DVB"}
     assert any(text.startswith("DVA 3.1 mph given, 2.8") for text in sentences)
 
 
