@@ -7,7 +7,7 @@ numbers that differ.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from decimal import Decimal
 
 import numpy as np
@@ -32,18 +32,20 @@ LAST_ERROR = 1e-6
 """Relative difference that other arithmetics leave in numbers of many digits."""
 DOUBLE = "computed in double precision, not by an Apple"
 SINGLE = "computed in single precision, not by an Apple"
+NOT_COMPUTED = (
+    "the results were not computed from these inputs: inputs or results, more than one number, "
+    "were altered"
+)
 Scene = Mapping[str, str]
 
 
-def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]] = ()) -> str:
+def explain(verification: Verification) -> str:
     """Return what explains a page that differs.
 
     Parameters
     ----------
     verification : Verification
         The page with its scene.
-    alternatives : sequence of mappings of str to str
-        Printed inputs of other scenes that explain the page as well.
 
     Returns
     -------
@@ -63,7 +65,15 @@ def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]
             ]
             if len(misses) <= MAX_UNEXPLAINED * len(names):
                 return cause + (f"; but not {', '.join(misses)}" if misses else "")
-    slips = [_slip(verification, finding, alternatives) for finding in findings]
+        return NOT_COMPUTED
+    slips = [_slip(verification, finding) for finding in findings]
+    either = [
+        f"{finding.name} {finding.read} (would be {finding.printed})"
+        for finding in verification.findings
+        if finding.kind is Kind.EITHER
+    ]
+    if either:
+        slips.append(f"one of these is a slip, or edited later: {' or '.join(either)}")
     slips += [
         f"line {verification.line_of(finding.start)}: the label {finding.read} is where the "
         f"program prints {finding.printed}"
@@ -72,9 +82,7 @@ def explain(verification: Verification, alternatives: Sequence[Mapping[str, str]
     return "; ".join(slips) if len(slips) < MIN_NUMBERS else ""
 
 
-def _slip(
-    verification: Verification, finding: Finding, alternatives: Sequence[Mapping[str, str]]
-) -> str:
+def _slip(verification: Verification, finding: Finding) -> str:
     """Return the sentence on one number that differs from all others."""
     line = verification.line_of(finding.start)
     if finding.name not in INPUTS:
@@ -84,17 +92,10 @@ def _slip(
         )
     if finding.name == "MUP" and finding.read == opposite(finding.printed):
         return f"line {line}: computed with the other sign of MU (line 400)"
-    sentence = (
+    return (
         f"line {line}: {finding.name} {finding.read} is a slip, or edited later: everything else "
         f"was computed with {finding.printed}"
     )
-    others = {
-        f"{name} {number.read} (would be {printed[name]})"
-        for printed in alternatives
-        for name, number in verification.numbers.items()
-        if name in printed and printed[name] != number.printed and name != finding.name
-    }
-    return sentence + "".join(f"; or it is {other}" for other in sorted(others))
 
 
 def _causes(verification: Verification) -> Iterator[tuple[str, Mapping[str, str], float]]:

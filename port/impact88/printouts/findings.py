@@ -25,6 +25,7 @@ class Kind(Enum):
     """Kinds of findings."""
 
     NUMBER = "another number"
+    EITHER = "one of several numbers, each of which alone explains the page"
     LABEL = "another word in a label's place"
     OPEN = "another number, on a page or for inputs read with doubt"
     UNREAD = "number not read"
@@ -41,6 +42,7 @@ class Kind(Enum):
 VERDICTS = MappingProxyType(
     {
         Kind.NUMBER: Verdict.DIFFERS,
+        Kind.EITHER: Verdict.DIFFERS,
         Kind.LABEL: Verdict.DIFFERS,
         Kind.OPEN: Verdict.INCOMPLETE,
         Kind.UNREAD: Verdict.INCOMPLETE,

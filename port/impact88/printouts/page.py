@@ -29,6 +29,8 @@ HEADING = 4
 ANGLE_ROW = 5
 ASTERISKS = (10, 14)
 ANGLES = ("PA", "PB", "TA", "TB", "GA")
+PARTNERS = {"PA": "TA", "TA": "PA", "PB": "TB", "TB": "PB"}
+"""Angles that enter only as a sum."""
 REPLIES = {"REPLY_A": ("UX", "UY", "WA"), "REPLY_B": ("VX", "VY", "WB")}
 MANY = ("ANGLES", *REPLIES)
 """Places of several numbers."""

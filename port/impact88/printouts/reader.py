@@ -36,8 +36,8 @@ OWNED = re.compile(
     r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:])"
 )
 """A number in one piece behind a label."""
-CUT = re.compile(r"\.$")
-"""The end of a number that nobody prints."""
+CUT = re.compile(r"\.$|^-?0[0-9]")
+"""The end or beginning of a number that lost digits."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
@@ -263,7 +263,8 @@ class _Reader:
         slots: dict[str, Slot] = {}
         if count:
             slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
-            ends = [glyph.gap > 0 or glyph.char in ")%" for glyph in glyphs[count : count + 1]]
+            end = before.stop + count
+            ends = [glyph.gap > 0 or glyph.char in ")%" for glyph in self.glyphs[end : end + 1]]
             is_label = any(glyph.char.isalpha() for glyph in glyphs[count : count + 1])
             is_last = not any(CELLS[j].kind == "slot" for j in cells if CELLS[j].row == row)
             slot.is_bounded = all(ends) and (is_last or is_label)

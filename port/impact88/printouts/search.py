@@ -2,8 +2,9 @@
 
 A scene costs what its inputs do, plus what it costs that each result it prints is the one that was
 read: the more, the further off it is. The scene as read is tried first; where it leaves a result
-unexplained, the cheapest combinations of readings; then slips in single inputs of the best scenes,
-while they explain more.
+unexplained, the cheapest combinations of readings; then slips in inputs read with doubt, while they
+explain more. An input that was read cleanly is what it is, unless another value of it alone
+explains every result that differs.
 """
 
 from __future__ import annotations
@@ -11,15 +12,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from decimal import Decimal
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
-from .numerals import TYPED, opposite, readings, slips, stored_and_printed
-from .page import ANGLES, INPUTS, NAMES, RESULTS
+from .numerals import TYPED, opposite, readings, stored_and_printed
+from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
 
@@ -31,6 +32,11 @@ BEST = 3
 """Scenes from which the search for slips goes on."""
 MAX_ROUNDS = 4
 """Slips that a scene may have."""
+STEPS = sorted(range(-20, 21), key=abs)
+"""Units of a place by which a value is varied: two of the place before it."""
+PLACES = range(3, -5, -1)
+"""Places of a value that are varied, from its first digit's: a cut number has lost some."""
+HALF_TURN = Decimal(180)
 TINY = 1e-38
 """Less than any number that the Apple prints."""
 FINAL_SPINS = ("WAF", "WBF")
@@ -47,12 +53,14 @@ class Option(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """Printed and typed texts of a scene's inputs, M, and their cost."""
+    """Printed and typed texts of a scene's inputs, M, their cost, and the input that was read
+    cleanly as another."""
 
     printed: Texts
     typed: Texts
     M: str
     cost: float
+    replaced: str = ""
 
 
 @dataclass(frozen=True)
@@ -134,9 +142,10 @@ def find_scenes(
         best = sorted([*best, *edits], key=lambda scene: scene.cost)[:BEST]
     # slips are believed only where they explain most of what differs
     if 2 * best[0].mismatch > as_read.mismatch:
-        return [as_read], []
-    limit = best[0].cost + RESPELLED
-    return [scene for scene in best if scene.cost <= limit], []
+        best = [as_read]
+    if best[0].mismatch >= CONTRADICTED:
+        best = search.replace(best[0]) or best[:1]
+    return best, []
 
 
 def _options(
@@ -199,35 +208,73 @@ class _Search:
         self.read = [n for n in INPUTS if n in reading.slots or scene_name(n) not in given]
         names = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
         self.expected = {name: reading.readings(name) for name in names}
-        self.slots = reading.slots
+        self.clean = [
+            name
+            for name in self.read
+            if (reading.slots[name].is_clean if name in reading.slots else name in reading.replies)
+        ]
 
     def edits(self, candidate: Candidate) -> list[Candidate]:
-        """Return a scene with one input typed otherwise that prints alike, or with one slip in it.
-
-        A number that was read cleanly is contradicted by a slip in it.
-        """
+        """Return a scene with one input typed otherwise that prints alike."""
         edits = []
-        numbers, entries, m, cost = candidate
         for name in self.read:
-            text = numbers[name]
+            text, entry = candidate.printed[name], candidate.typed[name]
             texts = [*self.program.spellings(name, text)]
             if name == "MUP":  # -10 printed of a typed 10 is no pivot
-                texts.append(opposite(entries[name]))
+                texts.append(opposite(entry))
             for rank, spelling in enumerate(texts):
-                doubt = PASSED * (1 + rank / 9)
-                edits.append(Candidate(numbers, {**entries, name: spelling}, m, cost + doubt))
-            slot = self.slots.get(name)
-            is_clean = slot is not None and slot.is_clean
-            read = slot.text if slot else text
-            ways = [(read, 0.0)] if is_clean else []
-            for slip, doubt in chain(ways, slips(text), slips(read)):
-                doubt += CONTRADICTED * (is_clean and slip != read)
-                change = {name: slip}
-                edits.append(Candidate(numbers | change, entries | change, m, cost + doubt))
+                cost = candidate.cost + PASSED * (1 + rank / 9)
+                edits.append(
+                    candidate._replace(typed={**candidate.typed, name: spelling}, cost=cost)
+                )
         return edits
 
-    def replay(self, candidates: list[Candidate]) -> list[Recovered]:
-        """Return the best candidates, replayed, the cheapest first.
+    def replace(self, scene: Recovered) -> list[Recovered]:
+        """Return the scenes in which another value of one clean input explains all results.
+
+        A single result that differs is not explained so. A value has as few decimal places as can
+        be. Each place of a value is found in turn,
+        beginning before its first digit. Of an angle that enters only as a sum, the other angle
+        explains as much.
+        """
+        base = scene.candidate
+        values = {name: Decimal(base.printed[name]) for name in self.clean}
+        if scene.mismatch <= 2 * CONTRADICTED:
+            return []
+        edits: list[Candidate] = []
+        for place in PLACES:
+            edits = []
+            for name, value in values.items():
+                unit = Decimal(1).scaleb(Decimal(base.printed[name]).adjusted() + place)
+                limit = max(HALF_TURN, abs(value)) if name in ANGLES else unit * 10**9
+                for step in STEPS:
+                    text = _text_of(max(-limit, min(limit, value + step * unit)))
+                    edits.append(_with(base, name, text))
+            costs = self._run(edits)[1].reshape(-1, len(STEPS))
+            edits = [
+                edits[k * len(STEPS) + at] for k, at in enumerate(costs.argmin(axis=1).tolist())
+            ]
+            values = {edit.replaced: Decimal(edit.printed[edit.replaced]) for edit in edits}
+        for name, partner in PARTNERS.items():
+            if {name, partner} <= values.keys():
+                total = values[name] + Decimal(base.printed[partner])
+                edit = _with(base, partner, _text_of(total - Decimal(base.printed[name])))
+                edits.append(edit._replace(cost=base.cost))
+        scenes = [s for s in self.replay(edits, len(edits)) if s.mismatch < CONTRADICTED]
+        scenes = [s for s in scenes if s.cost <= scenes[0].cost + RESPELLED]
+        return [*{s.candidate.replaced: s for s in scenes[::-1]}.values()][::-1]
+
+    def replay(self, candidates: list[Candidate], count: int = BEST) -> list[Recovered]:
+        """Return the best candidates, replayed, the cheapest first."""
+        run, mismatch = self._run(candidates)
+        total = mismatch + np.array([candidate.cost for candidate in candidates])
+        return [
+            _scene_of(candidates[k], float(mismatch[k]), run, k)
+            for k in np.argsort(total, kind="stable")[:count].tolist()
+        ]
+
+    def _run(self, candidates: list[Candidate]) -> tuple[Outcomes, NDArray[np.float64]]:
+        """Return what the program prints for candidates, and the cost of their results.
 
         Line 400 may turn the sign of MU: where another is printed than was read, it is typed
         the other way.
@@ -247,11 +294,26 @@ class _Search:
         mismatch = CONTRADICTED * ((mup != read) & (mup != b""))
         for name, costs in self.expected.items():
             mismatch += _result_costs(run.printed(name), costs)
-        total = mismatch + np.array([candidate.cost for candidate in candidates])
-        return [
-            _scene_of(candidates[k], float(mismatch[k]), run, k)
-            for k in np.argsort(total, kind="stable")[:BEST].tolist()
-        ]
+        return run, mismatch
+
+
+def _with(candidate: Candidate, name: str, text: str) -> Candidate:
+    """Return a candidate with another text of an input."""
+    change = {name: text}
+    numbers, entries = candidate.printed | change, candidate.typed | change
+    places = _count_places(text) - _count_places(candidate.printed[name])
+    return Candidate(numbers, entries, candidate.M, candidate.cost + ALIKE * max(places, 0), name)
+
+
+def _count_places(text: str) -> int:
+    """Return the number of decimal places of a number."""
+    return -int(Decimal(text).normalize().as_tuple().exponent)
+
+
+def _text_of(value: Decimal) -> str:
+    """Return a value as the program prints it."""
+    entry = stored_and_printed(f"{value:f}")
+    return entry[1] if entry else "0"
 
 
 def _columns(candidates: Sequence[Candidate]) -> dict[str, list[str]]:

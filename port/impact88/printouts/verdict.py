@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from difflib import SequenceMatcher
 from types import MappingProxyType
 
@@ -29,8 +30,8 @@ from .page import (
     printed_rows,
 )
 from .programs import Listing
-from .reader import Reading, Slot, read_printouts
-from .search import FINAL_SPINS, find_scenes, scene_name, unseen_digits
+from .reader import CUT, Reading, Slot, read_printouts
+from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
 MACHINE_READ = 3
 """Misread characters of labels and damaged numbers from which a machine read the page."""
@@ -38,8 +39,8 @@ MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
 """Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
-LEADING_ZERO = re.compile("-?0[0-9]")
-"""The beginning of a number that lost digits."""
+HALF_TURNS = (-360, -180, 180, 360)
+"""Degrees after which the axes of the crush plane are the same, or both turned."""
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
 
 
@@ -78,18 +79,29 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
     if not scenes:
         return _without_scene(reading, missing)
     best, *alternatives = scenes
-    page = best.fields, best.scene, best.ending
-    comparison = Comparison(reading, *page, given)
-    findings = comparison.findings()
-    if layout := program.layout(best.scene):
-        own_findings = {*map(_without_place, Comparison(layout, *page).findings())}
-        findings = [finding for finding in findings if _without_place(finding) not in own_findings]
-    findings = comparison.settle(findings)
+    findings, comparison = _compare(reading, best, given, program)
+    names = {scene.candidate.replaced for scene in scenes}
+    for other in alternatives:
+        name = other.candidate.replaced
+        findings += [
+            finding
+            for finding in _compare(reading, other, given, program)[0]
+            if finding.name == name
+        ]
+    if alternatives:
+        is_cut = any(finding.kind is Kind.UNREAD for finding in findings if finding.name in names)
+        kind = Kind.OPEN if is_cut else Kind.EITHER
+        findings = [
+            finding._replace(kind=kind)
+            if finding.kind is Kind.NUMBER and finding.name in names
+            else finding
+            for finding in findings
+        ]
     verification = Verification(
         verdict_of(findings),
         best.scene,
         comparison.numbers,
-        tuple(findings),
+        tuple(sorted(findings, key=lambda finding: finding.start)),
         unseen_digits(best, program),
         page=tuple(print_page(best.fields, comparison.typed_replies())),
         text=reading.text,
@@ -99,8 +111,20 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
         return verification
     from .explain import explain  # runs the port, which other verdicts do not need
 
-    inputs = [alternative.candidate.printed for alternative in alternatives]
-    return replace(verification, explanation=explain(verification, inputs))
+    return replace(verification, explanation=explain(verification))
+
+
+def _compare(
+    reading: Reading, scene: Recovered, given: Mapping[str, str], program: Listing
+) -> tuple[list[Finding], Comparison]:
+    """Return what was not read as the program prints it for a scene, and the comparison."""
+    page = scene.fields, scene.scene, scene.ending
+    comparison = Comparison(reading, *page, given)
+    findings = comparison.findings()
+    if layout := program.layout(scene.scene):
+        own_findings = {*map(_without_place, Comparison(layout, *page).findings())}
+        findings = [finding for finding in findings if _without_place(finding) not in own_findings]
+    return comparison.settle(findings), comparison
 
 
 def _without_place(finding: Finding) -> tuple[Kind, str, str]:
@@ -265,7 +289,11 @@ class Comparison:
     def _is_cut(self, slot: Slot, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line."""
         behind = self.reading.text[slot.glyphs[-1].offset + 1 :]
-        return printed.startswith(slot.text) and bool(re.match(r"[^\S\n]*(\r?\n|$)", behind))
+        numbers = [printed]
+        if printed and slot is self.reading.slots.get("GA"):
+            numbers += [f"{Decimal(printed) + turn:f}" for turn in HALF_TURNS]
+        is_beginning = any(number.startswith(slot.text) for number in numbers)
+        return is_beginning and bool(re.match(r"[^\S\n]*(\r?\n|$)", behind))
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
@@ -367,7 +395,7 @@ class Comparison:
 def _is_unsure(finding: Finding) -> bool:
     """Return True for an input read with doubt, other than one that people wrote otherwise."""
     is_respelled = as_printed(finding.read) == finding.printed != finding.read
-    is_sure = is_respelled and not LEADING_ZERO.match(finding.read)
+    is_sure = is_respelled and not CUT.search(finding.read)
     return finding.kind is Kind.DOUBT and finding.name in INPUTS and not is_sure
 
 

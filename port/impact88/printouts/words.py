@@ -29,6 +29,7 @@ SUMMARIES = {
 }
 SENTENCES = {
     Kind.NUMBER: "{name} {read}: the program prints {printed}",
+    Kind.EITHER: "{name} {read}, or another so listed: the program prints {printed}",
     Kind.LABEL: "{read} where the program prints {printed}",
     Kind.OPEN: "{name} {read}, perhaps misread: the program prints {printed} for what was read",
     Kind.UNREAD: "{name} was not read{instead}{expected}",
@@ -126,6 +127,7 @@ def _table(verification: Verification) -> Iterator[str]:
     kinds = {finding.name: finding.kind for finding in verification.findings}
     words = {
         Kind.NUMBER: "differs",
+        Kind.EITHER: "differs?",
         Kind.OPEN: "open",
         Kind.UNREAD: "not read",
         Kind.DOUBT: "doubt",
