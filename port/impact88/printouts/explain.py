@@ -75,8 +75,8 @@ def explain(verification: Verification) -> str:
     if either:
         slips.append(f"one of these is a slip, or edited later: {' or '.join(either)}")
     slips += [
-        f"line {verification.line_of(finding.start)}: the label {finding.read} is where the "
-        f"program prints {finding.printed}"
+        f"line {verification.line_of(finding.start)}: {finding.read!r} is where the program "
+        f"prints {finding.printed!r}"
         for finding in labels
     ]
     return "; ".join(slips) if len(slips) < MIN_NUMBERS else ""

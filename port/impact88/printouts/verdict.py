@@ -14,7 +14,7 @@ from difflib import SequenceMatcher
 from types import MappingProxyType
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import Glyph, plain_char
+from .glyphs import LOOKALIKES, Glyph, plain_char
 from .numerals import TYPED, as_printed, is_same_value, readings
 from .page import (
     ASTERISKS,
@@ -39,6 +39,8 @@ MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
 """Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
+MIN_LETTERS = 2
+"""Letters in which another word differs: one may be a misprint."""
 HALF_TURNS = (-360, -180, 180, 360)
 """Degrees after which the axes of the crush plane are the same, or both turned."""
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
@@ -257,18 +259,22 @@ class Comparison:
     def text_findings(self) -> list[Finding]:
         """Return the words, rows and other text that are not as the program prints them."""
         findings = []
+        foreign = [*self.reading.foreign]
         for word in self.words:
             if word.read != word.printed:
                 is_label = word.is_other and not self.is_machine_read
                 kind = Kind.LABEL if is_label else Kind.MISREAD if word.read else Kind.LOST
                 cell = word.cells[0]
+                for run in [run for run in foreign if _touches(run, word.glyphs)]:
+                    word.glyphs = sorted([*word.glyphs, *run], key=lambda glyph: glyph.offset)
+                    foreign.remove(run)
                 findings.append(
                     self.finding(kind, CELLS[cell].name, word.glyphs, word.printed, cell)
                 )
         for row in self.lost_rows:
             cell = next(j for j, c in enumerate(CELLS) if c.row == row)
             findings.append(self.finding(Kind.ROW_LOST, TITLES[row], [], TITLES[row], cell))
-        findings += [self.finding(Kind.FOREIGN, "", run, "", 0) for run in self.reading.foreign]
+        findings += [self.finding(Kind.FOREIGN, "", run, "", 0) for run in foreign]
         return findings
 
     def _number_kind(self, name: str) -> Kind | None:
@@ -372,11 +378,17 @@ class Comparison:
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
 
-        They do not where inputs were not read; where more of them differ than an alteration
+        On a page read exactly elsewhere, another word in a label's place differs. Numbers do not
+        where inputs were not read; where more of them differ than an alteration
         explains, while an input is in doubt or a machine read the page; and on such a page unless
         each is one digit for another in which the reader does not err elsewhere. A lost sign or
         point is a doubt there.
         """
+        words = [finding for finding in findings if finding.kind is Kind.MISREAD]
+        names = {finding.name for finding in words}
+        is_exact = all(f in words or (f.read == f.printed and f.name in names) for f in findings)
+        if is_exact and all(map(_is_other_word, words)):
+            findings = [f._replace(kind=Kind.LABEL) if f in words else f for f in findings]
         if self.is_machine_read:
             findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
@@ -390,6 +402,25 @@ class Comparison:
             swaps = [swap for finding in [*numbers, *unread] if (swap := _swap(finding))]
             is_open |= len({*swaps}) < len(swaps) or not all(map(_swap, numbers))
         return [f._replace(kind=Kind.OPEN) if is_open and f in numbers else f for f in findings]
+
+
+def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
+    """Return True for glyphs without a blank before or behind those of a word."""
+    if not word:
+        return False
+    return (word[0].offset - run[-1].offset == 1 and not word[0].gap) or (
+        run[0].offset - word[-1].offset == 1 and not run[0].gap
+    )
+
+
+def _is_other_word(finding: Finding) -> bool:
+    """Return True for another word than a label's, not one that lost letters or was misread."""
+    read, printed = finding.read.upper(), finding.printed
+    blocks = SequenceMatcher(None, read, printed).get_matching_blocks()
+    count = max(len(read), len(printed)) - sum(block.size for block in blocks)
+    if len(read) == len(printed):
+        count = sum(b not in a + LOOKALIKES.get(a, "") for a, b in zip(printed, read, strict=True))
+    return count >= MIN_LETTERS and read.isalpha() and sum(b.size for b in blocks) < len(read)
 
 
 def _is_unsure(finding: Finding) -> bool:

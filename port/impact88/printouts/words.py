@@ -17,8 +17,7 @@ TITLES = {
 }
 SUMMARIES = {
     Verdict.IDENTICAL: (
-        "all {count} printed numbers, their labels and replies are what the program prints, "
-        "digit for digit"
+        "all {count} printed numbers{labels} are what the program prints, digit for digit"
     ),
     Verdict.AS_READ: (
         "what was read exactly of {count} printed numbers is what the program prints; the rest is "
@@ -27,14 +26,16 @@ SUMMARIES = {
     Verdict.DIFFERS: "{count} printed numbers compared; the text is not what the program prints",
     Verdict.INCOMPLETE: "too little was read beyond doubt to tell",
 }
+MISSING = "lines or numbers are missing; everything else is what the program prints"
+NO_SCENE = "inputs are missing or were not read; give them with --scene if you know them"
 SENTENCES = {
     Kind.NUMBER: "{name} {read}: the program prints {printed}",
     Kind.EITHER: "{name} {read}, or another so listed: the program prints {printed}",
-    Kind.LABEL: "{read} where the program prints {printed}",
+    Kind.LABEL: "{read} where the program prints {printed!r}",
     Kind.OPEN: "{name} {read}, perhaps misread: the program prints {printed} for what was read",
     Kind.UNREAD: "{name} was not read{instead}{expected}",
     Kind.DOUBT: "{name} read with doubt from {read}: the program prints {printed}",
-    Kind.MISREAD: "{read} where the program prints {printed}",
+    Kind.MISREAD: "{read} where the program prints {printed!r}",
     Kind.LOST: "{printed} is missing",
     Kind.FOREIGN: "{read}: the program does not print this",
     Kind.ROW_LOST: "the row {name} is missing",
@@ -71,8 +72,7 @@ def write(
     name = "standard input" if file == "-" else file
     line = verification.line_of(verification.span[0])
     lines = [f"{name}, printout {number} (line {line}): {TITLES[verification.verdict]}"]
-    count = sum(bool(number.read) for number in verification.numbers.values())
-    lines.append("  " + SUMMARIES[verification.verdict].format(count=count))
+    lines.append("  " + _summary(verification))
     kinds = {finding.kind for finding in verification.findings}
     if verification.verdict is Verdict.DIFFERS and kinds & {Kind.MISREAD, Kind.DOUBT}:
         lines.append("  " + MACHINE_READ)
@@ -90,6 +90,20 @@ def write(
         lines += ["", "  Errors this page could not reveal:"]
         lines += [f"  - {sentence}" for sentence in unseen_lines(verification)]
     return lines
+
+
+def _summary(verification: Verification) -> str:
+    """Return the sentence below a verdict."""
+    if verification.verdict is Verdict.INCOMPLETE and not verification.scene:
+        return NO_SCENE
+    is_text = any(finding.read for finding in verification.findings)
+    if verification.verdict is Verdict.INCOMPLETE and not is_text:
+        return MISSING
+    has_replies = "?" in verification.text[slice(*verification.span)]
+    return SUMMARIES[verification.verdict].format(
+        count=sum(bool(number.read) for number in verification.numbers.values()),
+        labels=", their labels and replies" if has_replies else " and their labels",
+    )
 
 
 def _findings(verification: Verification) -> Iterator[str]:
