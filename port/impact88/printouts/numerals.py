@@ -10,7 +10,7 @@ from itertools import product
 from ..apple.applesoft import decimaltext
 from ..apple.applesoft.errorcodes import ApplesoftError
 from ..apple.applesoft.real import divide, multiply, rounded, to_stored
-from .costs import ALIKE, RESPELLED
+from .costs import ALIKE, RESPELLED, WRONG
 from .glyphs import LOOKALIKES
 
 PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0-9]{1,2})?")
@@ -142,3 +142,23 @@ def readings(chars: str) -> dict[str, float]:
         if PRINTED.fullmatch(number):
             texts.setdefault(number, cost + RESPELLED * (number != text))
     return texts
+
+
+@lru_cache(maxsize=1000)
+def slips(text: str) -> list[tuple[str, float]]:
+    """Return the printed numbers one slip from another, with the cost of the slip.
+
+    A slip replaces, loses, adds or exchanges characters.
+    """
+    costs: dict[str, float] = {}
+    for k in range(len(text) + 1):
+        before, char, behind = text[:k], text[k : k + 1], text[k + 1 :]
+        variants = [(before + new + char + behind, WRONG + RESPELLED) for new in NUMBER_CHARS]
+        if char:
+            variants += [(before + new + behind, WRONG) for new in NUMBER_CHARS]
+            variants.append((before + behind, WRONG + RESPELLED))
+            variants.append((before + behind[:1] + char + behind[1:], WRONG + RESPELLED))
+        for variant, cost in variants:
+            if PRINTED.fullmatch(variant) and as_printed(variant) == variant != text:
+                costs.setdefault(variant, cost)
+    return [*costs.items()]

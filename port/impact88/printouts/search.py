@@ -13,13 +13,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
-from .numerals import TYPED, opposite, readings, stored_and_printed
+from .numerals import TYPED, opposite, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
@@ -36,6 +37,8 @@ STEPS = sorted(range(-20, 21), key=abs)
 """Units of a place by which a value is varied: two of the place before it."""
 PLACES = range(3, -5, -1)
 """Places of a value that are varied, from its first digit's: a cut number has lost some."""
+MIN_RESULTS = 2
+"""Results that differ from which an input may explain them: one is rather altered itself."""
 HALF_TURN = Decimal(180)
 TINY = 1e-38
 """Less than any number that the Apple prints."""
@@ -208,6 +211,10 @@ class _Search:
         self.read = [n for n in INPUTS if n in reading.slots or scene_name(n) not in given]
         names = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
         self.expected = {name: reading.readings(name) for name in names}
+        self.sure = [n for n in names if n in reading.slots and reading.slots[n].is_clean]
+        self.read_texts = {
+            name: reading.slots[name].text if name in reading.slots else "" for name in INPUTS
+        }
         self.clean = [
             name
             for name in self.read
@@ -215,7 +222,8 @@ class _Search:
         ]
 
     def edits(self, candidate: Candidate) -> list[Candidate]:
-        """Return a scene with one input typed otherwise that prints alike."""
+        """Return a scene with one input typed otherwise that prints alike, or with one slip in an
+        input that was read with doubt."""
         edits = []
         for name in self.read:
             text, entry = candidate.printed[name], candidate.typed[name]
@@ -227,6 +235,10 @@ class _Search:
                 edits.append(
                     candidate._replace(typed={**candidate.typed, name: spelling}, cost=cost)
                 )
+            if name not in self.clean:
+                for slip, cost in chain(slips(text), slips(self.read_texts[name])):
+                    edit = _with(candidate, name, slip)
+                    edits.append(edit._replace(cost=candidate.cost + cost, replaced=""))
         return edits
 
     def replace(self, scene: Recovered) -> list[Recovered]:
@@ -239,7 +251,7 @@ class _Search:
         """
         base = scene.candidate
         values = {name: Decimal(base.printed[name]) for name in self.clean}
-        if scene.mismatch <= 2 * CONTRADICTED:
+        if self._count_differing(scene) < MIN_RESULTS:
             return []
         edits: list[Candidate] = []
         for place in PLACES:
@@ -260,9 +272,15 @@ class _Search:
                 total = values[name] + Decimal(base.printed[partner])
                 edit = _with(base, partner, _text_of(total - Decimal(base.printed[name])))
                 edits.append(edit._replace(cost=base.cost))
-        scenes = [s for s in self.replay(edits, len(edits)) if s.mismatch < CONTRADICTED]
+        scenes = [s for s in self.replay(edits, len(edits)) if not self._count_differing(s)]
         scenes = [s for s in scenes if s.cost <= scenes[0].cost + RESPELLED]
         return [*{s.candidate.replaced: s for s in scenes[::-1]}.values()][::-1]
+
+    def _count_differing(self, scene: Recovered) -> int:
+        """Return the number of results read cleanly that a scene does not explain."""
+        mup = scene.candidate.printed["MUP"]
+        count = sum(scene.fields.get(name, "") not in self.expected[name] for name in self.sure)
+        return count + (scene.fields.get("MUP", mup) != mup)
 
     def replay(self, candidates: list[Candidate], count: int = BEST) -> list[Recovered]:
         """Return the best candidates, replayed, the cheapest first."""
