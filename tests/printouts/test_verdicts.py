@@ -244,6 +244,72 @@ def test_a_stray_digit_behind_a_number_never_passes(name: str) -> None:
     assert verification.verdict in (Verdict.INCOMPLETE, Verdict.DIFFERS)
 
 
+@pytest.mark.parametrize("old", ["IB= 1961", "DB= 3.44", "-30", "EM= -.715"])
+def test_a_number_cut_at_the_end_of_its_row_is_open_and_another_differs(old: str) -> None:
+    digit = max(k for k, char in enumerate(old) if char.isdigit())
+    for end in range(digit, digit - 2, -1):
+        if old[end - 1].isdigit():
+            assert single(PAGE.replace(old + "\n", old[:end] + "\n")).verdict is Verdict.INCOMPLETE
+    other = old[: digit - 1] + "8" + old[digit:]
+    assert single(PAGE.replace(old + "\n", other + "\n")).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "read"),
+    [
+        ("INITIAL KE", "FINAL KE", "FINAL"),
+        ("INITIAL KE", "TOTAL KE", "TOTAL"),
+        ("%", "ft", "ft"),
+        ("LOSS", "GAIN", "GAIN"),
+    ],
+)
+def test_another_word_differs_where_all_else_is_read_exactly(old: str, new: str, read: str) -> None:
+    text = PAGE.replace(old, new)
+    verification = single(text)
+    assert verification.verdict is Verdict.DIFFERS
+    (finding,) = [f for f in verification.findings if f.kind is Kind.LABEL]
+    assert finding.read == read
+    assert f"{read!r} where the program prints {old.split()[0]!r}" in "\n".join(
+        words.write(verification)
+    )
+    assert single(text.replace("DA=", "0A=")).verdict is Verdict.AS_READ
+
+
+@pytest.mark.parametrize("word", ["INITAL", "INITXAL", "INITLAL", "lNlTlAL", "NITIAL"])
+def test_a_misprinted_label_is_listed_by_word(word: str) -> None:
+    verification = single(PAGE.replace("INITIAL KE", f"{word} KE"))
+    assert verification.verdict is Verdict.AS_READ
+    assert [(f.kind, f.read) for f in verification.findings] == [(Kind.MISREAD, word)]
+
+
+def test_numbers_that_run_into_a_word_are_the_pages_own() -> None:
+    for text in (re.sub(r"-\.715\s*INITIAL", "-.715INITIAL", PAGE), PAGE.replace("\n", "")):
+        verification = single(text)
+        assert verification.verdict is Verdict.IDENTICAL
+        assert verification.scene["EM"] == "-.715"
+
+
+def test_summaries_say_what_is_not_there() -> None:
+    def summary(text: str) -> str:
+        return words.write(single(text), brief=True)[1]
+
+    assert "labels and replies are" in summary(PAGE)
+    assert "numbers and their labels are" in summary(BODY)
+    assert "everything else is what the program prints" in summary(with_row("UX="))
+    assert "everything else" not in summary(with_row("UX=").replace("DA=", "0A="))
+    assert "--scene" in summary(BODY[BODY.index("INITIAL") :])
+
+
+def test_digits_that_nothing_confirms() -> None:
+    page = SAMPLES[2]  # M = 4 without arms
+    verification = single(page)
+    for name, other in (("IA", "9999"), ("PA", "-11.1")):
+        read = verification.numbers[name].read
+        assert verification.unseen[name] == sum(map(str.isdigit, read))
+        assert single(page.replace(f" {read} ", f" {other} ", 1)).verdict is Verdict.IDENTICAL
+    assert not {"MA", "MB", "UX"} & verification.unseen.keys()
+
+
 def test_a_lost_angle_is_missing() -> None:
     angles = row("-19.8").split()
     for k in range(5):
@@ -376,6 +442,13 @@ def test_results_alone_go_with_given_inputs() -> None:
     assert verification.verdict in (Verdict.IDENTICAL, Verdict.AS_READ)
     (other,) = verify(results, {**impact88.sample(1), "MA": "150"})
     assert other.verdict is Verdict.DIFFERS
+
+
+def test_a_given_input_of_which_the_page_has_another_value_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"the page has MU \.911, but \.5 is given"):
+        verify(PAGE, {"MU": ".5"})
+    (same,) = verify(PAGE, {**impact88.sample(1), "MU": "0.911", "MA": 143.50})
+    assert same.verdict is Verdict.IDENTICAL
 
 
 COPIES = {

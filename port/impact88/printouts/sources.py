@@ -15,6 +15,7 @@ from .findings import Verification
 from .glyphs import decode
 from .numerals import TYPED
 from .programs import CopyListing
+from .search import printed_fields
 from .verdict import judge
 
 MAX_BYTES = 2_000_000
@@ -47,7 +48,8 @@ def verify(
     Raises
     ------
     UserError
-        For a file that cannot be read or has no printout.
+        For a file that cannot be read or has no printout, and for a given input of which the page
+        has another value.
 
     Notes
     -----
@@ -80,11 +82,32 @@ def verify(
         program = CopyListing(ListingCopy(os.fspath(listing)))
     elif listing is not None:
         raise UserError(f"{quoted(listing)}: expected the name of a file with a listing")
-    if verifications := judge(text, _texts(given), program):
+    texts = _texts(given)
+    if verifications := judge(text, texts, program):
+        for verification in verifications:
+            _check_given(verification, texts, name)
         return verifications
     raise UserError(
         "no printout found; expected labels and numbers such as MA= 143.5 MB= 95.8", name
     )
+
+
+def _check_given(verification: Verification, given: Mapping[str, str], name: str) -> None:
+    """Raise UserError for an input that is given, and another on the page."""
+    for key, text in given.items():
+        number = verification.numbers.get({"MU": "MUP"}.get(key, key))
+        if number and number.read and verification.scene.get(key, text) != text:
+            numbers = (
+                printed_fields(verification.scene),
+                printed_fields({**verification.scene, key: text}),
+            )
+            if numbers[0] != numbers[1]:
+                line = verification.line_of(number.start)
+                raise UserError(
+                    f"line {line}: the page has {key} {number.read}, but {text} is given; "
+                    "give only inputs that the page lacks",
+                    name,
+                )
 
 
 def _texts(given: Mapping[str, Any] | None) -> dict[str, str]:
