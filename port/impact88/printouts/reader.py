@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -25,6 +26,7 @@ from .page import (
     CELLS,
     HEADING,
     MANY,
+    NAMES,
     PROMPTS,
     REPLIES,
     ROW_OF,
@@ -42,6 +44,9 @@ NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
 ENDING = re.compile(r"ZERODETERMINANT|\?[A-Z']{5,30}ERROR(?:IN[0-9]+)?")
+_NO_NUMBER = re.compile("[^-0-9.E,+]")
+MACHINE_READ = 3
+"""Misread characters of labels and damaged numbers from which a machine read the page."""
 MIN_NUMBERS = 3
 """Numbers, behind two letters of labels each, that make a text a printout."""
 PAGE_STEP = 5
@@ -132,6 +137,18 @@ class Reading:
         numbers = sum(bool(NUMERAL.fullmatch(slot.text)) for slot in self.slots.values())
         is_enough = numbers >= MIN_NUMBERS and letters >= 2 * MIN_NUMBERS
         return is_enough and 2 * numbers >= len(self.slots)
+
+    @cached_property
+    def is_machine_read(self) -> bool:
+        """True if labels and numbers were misread as a machine misreads them."""
+        misread = [
+            glyph
+            for j, glyph in self.chars.items()
+            if glyph.char != CELLS[j].char and glyph.char.isalnum()
+        ]
+        numbers = [slot.text for name, slot in self.slots.items() if name in NAMES]
+        damaged = [*filter(_NO_NUMBER.search, numbers)]
+        return len(damaged) + len(misread) >= MACHINE_READ
 
     def readings(self, name: str) -> dict[str, float]:
         """Return the printed texts that a number may be, with their costs."""

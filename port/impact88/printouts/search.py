@@ -29,8 +29,6 @@ MAX_CANDIDATES = 10_000
 """Combinations of readings that are replayed: four digits that nobody can read, .1 s."""
 MAX_OPTIONS = 40
 """Texts that an input may be."""
-BEST = 3
-"""Scenes from which the search for slips goes on."""
 MAX_ROUNDS = 4
 """Slips that a scene may have."""
 STEPS = sorted(range(-20, 21), key=abs)
@@ -129,26 +127,21 @@ def find_scenes(
     if "M" in given:
         ms = [(given["M"], 0.0)]
     first = {name: options[:1] for name, options in columns.items()}
-    best = search.replay(_combinations(first, ms, len(ms)))
-    if best[0].mismatch >= CONTRADICTED:
-        best = search.replay(_combinations(columns, ms, MAX_CANDIDATES))
-    as_read = best[0]
+    best = search.replay(_combinations(first, ms, len(ms)))[0]
+    if best.mismatch >= CONTRADICTED:
+        best = search.replay(_combinations(columns, ms, MAX_CANDIDATES))[0]
+    if scenes := search.replace(best):
+        return scenes, []
+    repaired = best
     for _ in range(MAX_ROUNDS):
-        if best[0].mismatch < CONTRADICTED:
+        edited = search.replay(search.edits(repaired.candidate))
+        if repaired.mismatch < CONTRADICTED or not edited or edited[0].cost >= repaired.cost:
             break
-        for base in best:
-            edits = search.replay(search.edits(base.candidate))
-            if edits and edits[0].cost < best[0].cost:
-                break
-        else:
-            break
-        best = sorted([*best, *edits], key=lambda scene: scene.cost)[:BEST]
+        repaired = edited[0]
     # slips are believed only where they explain most of what differs
-    if 2 * best[0].mismatch > as_read.mismatch:
-        best = [as_read]
-    if best[0].mismatch >= CONTRADICTED:
-        best = search.replace(best[0]) or best[:1]
-    return best, []
+    if 2 * repaired.mismatch <= best.mismatch:
+        best = repaired
+    return search.replace(best) or [best], []
 
 
 def _options(
@@ -177,20 +170,19 @@ def _combinations(
     columns: Mapping[str, Sequence[Option]], ms: Sequence[tuple[str, float]], count: int
 ) -> list[Candidate]:
     """Return the cheapest combinations of options."""
-    costs = np.array([cost for _, cost in ms])
-    ways = np.arange(len(ms))[:, None]
+    ways: list[tuple[float, str, list[Option]]] = [(cost, m, []) for m, cost in ms]
     for options in columns.values():
-        sums = np.add.outer(costs, [option.cost for option in options]).ravel()
-        order = sums.argsort(kind="stable")[:count]
-        costs = sums[order]
-        ways = np.column_stack([ways[order // len(options)], order % len(options)])
-    candidates = []
-    for cost, (m, *way) in zip(costs.tolist(), ways.tolist(), strict=True):
-        options = [column[k] for column, k in zip(columns.values(), way, strict=True)]
-        numbers = {name: option.printed for name, option in zip(columns, options, strict=True)}
-        entries = {name: option.typed for name, option in zip(columns, options, strict=True)}
-        candidates.append(Candidate(numbers, entries, ms[m][0], cost))
-    return candidates
+        longer = ((cost + o.cost, m, [*way, o]) for cost, m, way in ways for o in options)
+        ways = sorted(longer, key=lambda way: way[0])[:count]
+    return [
+        Candidate(
+            {name: option.printed for name, option in zip(columns, way, strict=True)},
+            {name: option.typed for name, option in zip(columns, way, strict=True)},
+            m,
+            cost,
+        )
+        for cost, m, way in ways
+    ]
 
 
 class _Search:
@@ -211,6 +203,7 @@ class _Search:
         self.read = [n for n in INPUTS if n in reading.slots or scene_name(n) not in given]
         names = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
         self.expected = {name: reading.readings(name) for name in names}
+        self.is_machine_read = reading.is_machine_read
         self.sure = [n for n in names if n in reading.slots and reading.slots[n].is_clean]
         self.read_texts = {
             name: reading.slots[name].text if name in reading.slots else "" for name in INPUTS
@@ -223,7 +216,7 @@ class _Search:
 
     def edits(self, candidate: Candidate) -> list[Candidate]:
         """Return a scene with one input typed otherwise that prints alike, or with one slip in an
-        input that was read with doubt."""
+        input: in one read cleanly only where a machine read the page."""
         edits = []
         for name in self.read:
             text, entry = candidate.printed[name], candidate.typed[name]
@@ -235,10 +228,12 @@ class _Search:
                 edits.append(
                     candidate._replace(typed={**candidate.typed, name: spelling}, cost=cost)
                 )
-            if name not in self.clean:
+            is_clean = name in self.clean
+            if self.is_machine_read or not is_clean:
                 for slip, cost in chain(slips(text), slips(self.read_texts[name])):
+                    doubt = cost + CONTRADICTED * (is_clean and slip != self.read_texts[name])
                     edit = _with(candidate, name, slip)
-                    edits.append(edit._replace(cost=candidate.cost + cost, replaced=""))
+                    edits.append(edit._replace(cost=candidate.cost + doubt, replaced=""))
         return edits
 
     def replace(self, scene: Recovered) -> list[Recovered]:
@@ -282,7 +277,7 @@ class _Search:
         count = sum(scene.fields.get(name, "") not in self.expected[name] for name in self.sure)
         return count + (scene.fields.get("MUP", mup) != mup)
 
-    def replay(self, candidates: list[Candidate], count: int = BEST) -> list[Recovered]:
+    def replay(self, candidates: list[Candidate], count: int = 1) -> list[Recovered]:
         """Return the best candidates, replayed, the cheapest first."""
         run, mismatch = self._run(candidates)
         total = mismatch + np.array([candidate.cost for candidate in candidates])

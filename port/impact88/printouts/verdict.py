@@ -33,8 +33,6 @@ from .programs import Listing
 from .reader import CUT, Reading, Slot, read_printouts
 from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
-MACHINE_READ = 3
-"""Misread characters of labels and damaged numbers from which a machine read the page."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
@@ -43,7 +41,6 @@ MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
 HALF_TURNS = (-360, -180, 180, 360)
 """Degrees after which the axes of the crush plane are the same, or both turned."""
-_NO_NUMBER = re.compile("[^-0-9.E,+]")
 
 
 def judge(
@@ -208,14 +205,6 @@ class Comparison:
             names = [name for name in names if name in reading.slots or name in due]
             self.lost_rows = []
         self.numbers = {name: self._number(name) for name in names}
-        misread = [
-            glyph
-            for j, glyph in reading.chars.items()
-            if glyph.char != CELLS[j].char and glyph.char.isalnum()
-        ]
-        numbers = [slot.text for name, slot in reading.slots.items() if name in NAMES]
-        damaged = [*filter(_NO_NUMBER.search, numbers)]
-        self.is_machine_read = len(damaged) + len(misread) >= MACHINE_READ
 
     def finding(
         self, kind: Kind, name: str, glyphs: Sequence[Glyph], printed: str, cell: int
@@ -262,7 +251,7 @@ class Comparison:
         foreign = [*self.reading.foreign]
         for word in self.words:
             if word.read != word.printed:
-                is_label = word.is_other and not self.is_machine_read
+                is_label = word.is_other and not self.reading.is_machine_read
                 kind = Kind.LABEL if is_label else Kind.MISREAD if word.read else Kind.LOST
                 cell = word.cells[0]
                 for run in [run for run in foreign if _touches(run, word.glyphs)]:
@@ -290,7 +279,7 @@ class Comparison:
         if slot.is_clean:
             is_end = slot.is_bounded and not self._is_cut(slot, text)
             return Kind.NUMBER if is_end else Kind.UNREAD
-        return Kind.DOUBT if self.is_machine_read and _is_alike(read, text) else Kind.UNREAD
+        return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def _is_cut(self, slot: Slot, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line."""
@@ -318,7 +307,7 @@ class Comparison:
             is_exact = slot.label == "exact"
             if not is_same or not is_exact:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
-                is_number = is_clean and not is_same and not self.is_machine_read
+                is_number = is_clean and not is_same and not self.reading.is_machine_read
                 kind = Kind.NUMBER if is_number else Kind.DOUBT
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
@@ -389,16 +378,16 @@ class Comparison:
         is_exact = all(f in words or (f.read == f.printed and f.name in names) for f in findings)
         if is_exact and all(map(_is_other_word, words)):
             findings = [f._replace(kind=Kind.LABEL) if f in words else f for f in findings]
-        if self.is_machine_read:
+        if self.reading.is_machine_read:
             findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         foreign = "".join(finding.read for finding in findings if finding.kind is Kind.FOREIGN)
-        is_unsure = self.is_machine_read or any(map(_is_unsure, findings))
+        is_unsure = self.reading.is_machine_read or any(map(_is_unsure, findings))
         is_unsure |= sum(map(str.isdigit, foreign)) >= MAX_FOREIGN_DIGITS
         is_open = is_unsure and len(numbers) + len(unread) > MAX_ALTERED
         is_open |= any(finding.name in INPUTS for finding in unread)
-        if self.is_machine_read:
+        if self.reading.is_machine_read:
             swaps = [swap for finding in [*numbers, *unread] if (swap := _swap(finding))]
             is_open |= len({*swaps}) < len(swaps) or not all(map(_swap, numbers))
         return [f._replace(kind=Kind.OPEN) if is_open and f in numbers else f for f in findings]
