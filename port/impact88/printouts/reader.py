@@ -38,8 +38,8 @@ OWNED = re.compile(
     r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:]|[A-Z]{5})"
 )
 """A number in one piece behind a label."""
-CUT = re.compile(r"\.$|^-?0[0-9]")
-"""The end or beginning of a number that lost digits."""
+CUT = re.compile(r"\.$")
+"""The end of a number that nobody prints."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")

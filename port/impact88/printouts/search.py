@@ -38,6 +38,8 @@ PLACES = range(3, -5, -1)
 MIN_RESULTS = 2
 """Results that differ from which an input may explain them: one is rather altered itself."""
 HALF_TURN = Decimal(180)
+DEGREES = Decimal(10)
+"""Largest unit by which an angle is varied: the results turn with it."""
 TINY = 1e-38
 """Less than any number that the Apple prints."""
 FINAL_SPINS = ("WAF", "WBF")
@@ -246,21 +248,23 @@ class _Search:
         """
         base = scene.candidate
         values = {name: Decimal(base.printed[name]) for name in self.clean}
-        if self._count_differing(scene) < MIN_RESULTS:
+        if not values or self._count_differing(scene) < MIN_RESULTS:
             return []
         edits: list[Candidate] = []
         for place in PLACES:
             edits = []
             for name, value in values.items():
                 unit = Decimal(1).scaleb(Decimal(base.printed[name]).adjusted() + place)
-                limit = max(HALF_TURN, abs(value)) if name in ANGLES else unit * 10**9
-                for step in STEPS:
-                    text = _text_of(max(-limit, min(limit, value + step * unit)))
-                    edits.append(_with(base, name, text))
-            costs = self._run(edits)[1].reshape(-1, len(STEPS))
-            edits = [
-                edits[k * len(STEPS) + at] for k, at in enumerate(costs.argmin(axis=1).tolist())
-            ]
+                limit = unit * 10**9
+                if name in ANGLES:
+                    unit, limit = min(unit, DEGREES), max(HALF_TURN, abs(value))
+                for origin in (value, Decimal(base.printed[name])):
+                    for step in STEPS:
+                        text = _text_of(max(-limit, min(limit, origin + step * unit)))
+                        edits.append(_with(base, name, text))
+            costs = self._run(edits)[1].reshape(len(values), -1)
+            best = costs.argmin(axis=1) + np.arange(len(values)) * costs.shape[1]
+            edits = [edits[k] for k in best.tolist()]
             values = {edit.replaced: Decimal(edit.printed[edit.replaced]) for edit in edits}
         for name, partner in PARTNERS.items():
             if {name, partner} <= values.keys():

@@ -30,9 +30,11 @@ from .page import (
     printed_rows,
 )
 from .programs import Listing
-from .reader import CUT, Reading, Slot, read_printouts
+from .reader import Reading, Slot, read_printouts
 from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
+LEADING_ZERO = re.compile("-?0[0-9]")
+"""The beginning of a number that lost digits."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
@@ -282,7 +284,9 @@ class Comparison:
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def _is_cut(self, slot: Slot, printed: str) -> bool:
-        """Return True for the beginning of a number at the end of its line."""
+        """Return True for the beginning of a number at the end of its line, or its end behind 0."""
+        if LEADING_ZERO.match(slot.text) and printed.endswith(slot.text.lstrip("-")):
+            return True
         behind = self.reading.text[slot.glyphs[-1].offset + 1 :]
         numbers = [printed]
         if printed and slot is self.reading.slots.get("GA"):
@@ -415,7 +419,7 @@ def _is_other_word(finding: Finding) -> bool:
 def _is_unsure(finding: Finding) -> bool:
     """Return True for an input read with doubt, other than one that people wrote otherwise."""
     is_respelled = as_printed(finding.read) == finding.printed != finding.read
-    is_sure = is_respelled and not CUT.search(finding.read)
+    is_sure = is_respelled and not LEADING_ZERO.match(finding.read)
     return finding.kind is Kind.DOUBT and finding.name in INPUTS and not is_sure
 
 
