@@ -132,7 +132,8 @@ def find_scenes(
     best = search.replay(_combinations(first, ms, len(ms)))[0]
     if best.mismatch >= CONTRADICTED:
         best = search.replay(_combinations(columns, ms, MAX_CANDIDATES))[0]
-    if scenes := search.replace(best):
+    is_exact = len(search.clean) == len(search.read)  # else what is in doubt is repaired first
+    if is_exact and (scenes := search.replace(best)):
         return scenes, []
     repaired = best
     for _ in range(MAX_ROUNDS):
