@@ -33,8 +33,8 @@ from .programs import Listing
 from .reader import Reading, Slot, read_printouts
 from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
-LEADING_ZERO = re.compile("-?0[0-9]")
-"""The beginning of a number that lost digits."""
+LEADING_ZERO = re.compile(r"-?0[0-9]|.*\.$")
+"""The beginning, or the end, of a number that lost digits."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
