@@ -353,7 +353,9 @@ MACHINE = BODY.replace("IB=", "1B=").replace("MU=", "NU=").replace("MB=", "M8=")
 def test_from_three_misread_characters_on_only_a_digit_for_another_differs() -> None:
     for old, new, verdict in (
         ("VBY= 19.982", "VBY= 19.92", Verdict.INCOMPLETE),
-        ("VBY= 19.982", "VBY= -19.982", Verdict.AS_READ),
+        ("VBY= 19.982", "VBY= -19.982", Verdict.INCOMPLETE),
+        ("VBY= 19.982", "VBY= 1.9982", Verdict.INCOMPLETE),
+        ("VBY= 19.982", "VBY= 19982", Verdict.AS_READ),
         ("E= 5E-03 ", "E= 5E-05 ", Verdict.DIFFERS),
     ):
         assert single(BODY.replace(old, new)).verdict is Verdict.DIFFERS

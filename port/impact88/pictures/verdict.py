@@ -232,7 +232,7 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
         is_odd = not altered_numbers(cells) <= adverse
         is_odd |= any(f.kind is Kind.NUMBER and f.name not in measured for f in result.findings)
         is_odd |= any(cell.name not in RESULTS for cell in in_doubt)
-        is_odd |= len(differing) > MAX_DIFFERING and not result.explanation
+        is_odd |= len(differing) > MAX_DIFFERING
         return Verdict.INCOMPLETE if is_odd else verdict
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
         if in_doubt or altered_numbers(cells):

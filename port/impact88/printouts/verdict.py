@@ -431,9 +431,9 @@ def _is_alike(read: str, printed: str) -> bool:
 
 
 def _is_slight(finding: Finding) -> bool:
-    """Return True for a number that differs in nothing but its sign or point."""
-    digits = [re.sub("[^0-9E]", "", text) for text in (finding.read, finding.printed)]
-    return finding.kind is Kind.NUMBER and digits[0] == digits[1] != ""
+    """Return True for a number that differs in nothing but a lost point."""
+    read = "".join(finding.read.split())
+    return finding.kind is Kind.NUMBER and read == finding.printed.replace(".", "")
 
 
 def _swap(finding: Finding) -> str:
