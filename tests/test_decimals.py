@@ -45,11 +45,6 @@ def test_exact_keeps_every_digit_and_refuses_huge_exponents() -> None:
         decimals.exact("1E-999999999")
 
 
-@given(st.lists(NUMERALS.filter(decimaltext.is_number), max_size=5))
-def test_many_texts_are_read_as_each_of_them(texts: list[str]) -> None:
-    assert decimals.to_doubles(texts) == [decimals.to_double(text) for text in texts]
-
-
 @given(NUMERALS.filter(decimaltext.is_number))
 def test_negated_text_has_the_negated_value(text: str) -> None:
     assert decimals.to_double(decimals.negated(text)) == -decimals.to_double(text)

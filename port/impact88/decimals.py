@@ -5,7 +5,6 @@ sign, point or E counts as zero, and E may be in either case. How the 1988 progr
 business of `apple.applesoft.decimaltext`; here its value becomes a double or an exact fraction.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 from .apple.applesoft import decimaltext
@@ -56,16 +55,6 @@ def to_double(text: str) -> float:
         except ValueError:
             pass
     return float(_numeral(text))
-
-
-def to_doubles(texts: Sequence[str]) -> list[float]:
-    """Return the double of each text. Raises ValueError for a text that is not a number."""
-    if _PLAIN.issuperset("".join(texts)):
-        try:
-            return list(map(float, texts))
-        except ValueError:
-            pass
-    return list(map(to_double, texts))
 
 
 def to_text(value: float) -> str:

@@ -3,7 +3,7 @@
 glyphs    a text as characters with the gaps between them
 page      the program's page: rows, labels, places of numbers
 labels    the labels that were read exactly, in the page's order
-align     what stands between two labels, aligned with the cells between them
+align     the text between two labels, aligned with the cells between them
 reader    the printouts of a text, number by number
 search    the scene they come from, by exact replay
 verdict   the comparison with that scene's page

@@ -79,7 +79,7 @@ _STEPS = np.where(_BACK > 0, PASSED * (_BACK - 1), BACKWARD - PASSED * _BACK + A
 def find_labels(glyphs: Sequence[Glyph]) -> list[tuple[str, int, int]]:
     """Return the labels that were read exactly: text, first glyph, end.
 
-    No letter stands before one, and no blank in it; a prompt or the heading of the angles may be
+    No letter is right before one, and no blank in it; a prompt or the heading of the angles may be
     broken anywhere.
     """
     text = chars_of(glyphs)

@@ -1,4 +1,4 @@
-"""The printouts of a text: where each number stands, which label owns it, and what it may be.
+"""The printouts of a text: where each number is, which label owns it, and what it may be.
 
 Labels read exactly are anchors (`labels`). Each owns the number that follows it; what lies between
 two anchors is aligned with the cells between them.
@@ -98,7 +98,7 @@ class Reading:
     text : str
         The whole text; offsets of glyphs refer to it.
     slots : dict of str to Slot
-        What stands in the place of each number, and of the two replies.
+        The text in the place of each number, and of the two replies.
     chars : dict of int to Glyph
         The glyph of each cell of a word.
     other_labels : dict of int to list of Glyph
@@ -127,7 +127,7 @@ class Reading:
 
     @property
     def is_printout(self) -> bool:
-        """True if most of what stands in the places of numbers is one, behind labels."""
+        """True if most texts in the places of numbers are numbers, after labels."""
         if self.ending and "REPLY_A" in self.slots:
             return True
         letters = sum(
@@ -273,7 +273,7 @@ class _Reader:
     def _read_between(
         self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]
     ) -> None:
-        """Read what stands between two anchors: the number that the first owns, and the rest."""
+        """Read the text between two anchors: the number that the first owns, and the rest."""
         owner, row = _owner(before.label), before.label.row
         is_exact = before.read == before.label.text
         count = self._count_owned(glyphs, before.label, behind)
@@ -325,7 +325,7 @@ class _Reader:
             self.reading.foreign += [word for word in words if word not in five]
 
     def _add_slot(self, name: str, slot: Slot) -> None:
-        """Add what stands in the place of a number, or a second such thing."""
+        """Add the text in the place of a number, or a second one."""
         slots = self.reading.slots
         if name in slots and slot.is_clean and not slots[name].is_clean:
             slots[name], slot = slot, slots[name]

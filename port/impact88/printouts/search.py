@@ -3,8 +3,8 @@
 A scene costs what its inputs do, plus what it costs that each result it prints is the one that was
 read: the more, the further off it is. The scene as read is tried first; where it leaves a result
 unexplained, the cheapest combinations of readings; then slips in inputs read with doubt, while they
-explain more. An input that was read cleanly is what it is, unless another value of it alone
-explains every result that differs.
+explain more. An input that was read cleanly is replaced only if another value of it alone explains
+every result that differs.
 """
 
 from __future__ import annotations
@@ -242,10 +242,9 @@ class _Search:
     def replace(self, scene: Recovered) -> list[Recovered]:
         """Return the scenes in which another value of one clean input explains all results.
 
-        A single result that differs is not explained so. A value has as few decimal places as can
-        be. Each place of a value is found in turn,
-        beginning before its first digit. Of an angle that enters only as a sum, the other angle
-        explains as much.
+        A single result that differs is not explained so. Each place of a value is found in turn,
+        beginning before its first digit; of those that explain as much, the one with the fewest
+        decimal places counts. Of two angles that enter only as a sum, either explains as much.
         """
         base = scene.candidate
         values = {name: Decimal(base.printed[name]) for name in self.clean}

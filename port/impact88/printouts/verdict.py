@@ -33,7 +33,7 @@ from .programs import Listing
 from .reader import Reading, Slot, read_printouts
 from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
-LEADING_ZERO = re.compile(r"-?0[0-9]|.*\.$")
+CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
 """The beginning, or the end, of a number that lost digits."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
@@ -285,7 +285,7 @@ class Comparison:
 
     def _is_cut(self, slot: Slot, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line, or its end behind 0."""
-        if LEADING_ZERO.match(slot.text) and printed.endswith(slot.text.lstrip("-")):
+        if CUT_NUMBER.match(slot.text) and printed.endswith(slot.text.lstrip("-")):
             return True
         behind = self.reading.text[slot.glyphs[-1].offset + 1 :]
         numbers = [printed]
@@ -419,7 +419,7 @@ def _is_other_word(finding: Finding) -> bool:
 def _is_unsure(finding: Finding) -> bool:
     """Return True for an input read with doubt, other than one that people wrote otherwise."""
     is_respelled = as_printed(finding.read) == finding.printed != finding.read
-    is_sure = is_respelled and not LEADING_ZERO.match(finding.read)
+    is_sure = is_respelled and not CUT_NUMBER.match(finding.read)
     return finding.kind is Kind.DOUBT and finding.name in INPUTS and not is_sure
 
 

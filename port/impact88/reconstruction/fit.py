@@ -28,7 +28,7 @@ MOVED = 1e-6  # sum of squares above which values were adjusted
 RIDGE = 0.1  # sum of squares that separates two minima
 STAGES = ((1e-2, 12), (1e-4, 12), (1e-6, 16))  # tolerance of exact values, in sizes; iterations
 LIMITED_STAGES = ((1e-1, 12), (1e-2, 12), (1e-3, 12), (1e-4, 12), (1e-6, 16))
-"""The same within limits, whose bends stop wider steps."""
+"""`STAGES` within limits, whose bends stop wider steps."""
 EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
 ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
