@@ -21,7 +21,7 @@ from ..mechanics.solve import evaluate
 from ..names import SCENE
 from .draws import Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
-from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
+from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
 from .problem import ANGLES, RANGES, WIDEST, Problem, signs_of_friction, unwrap_angles
@@ -57,14 +57,6 @@ KNOWABLE = (
     "M",
 )
 """Names of what may be known."""
-EVERY = (
-    *BEFORE,
-    *AFTER,
-    *"SA HA SB HB SAF HAF SBF HBF E MUP EM PN PT PM P DVA DVB DVAF DVAR DVBF DVBR".split(),
-    *"PDOFA PDOFB VC VS KI KF EL LOSS DT MUC RR0 ELN ELT ELM EESA EESB".split(),
-    *"XA YA XB YB XAF YAF XBF YBF CAX CAY CBX CBY".split(),
-)
-"""Results of an impact, in the order shown."""
 WITHOUT_ARMS = (
     *"EM RR0 PM WA WAF WB WBF XA YA XB YB XAF YAF XBF YBF CAX CAY CBX CBY ELN ELT ELM".split(),
 )

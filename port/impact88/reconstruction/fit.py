@@ -32,7 +32,9 @@ LIMITED_STAGES = ((1e-1, 12), (1e-2, 12), (1e-3, 12), (1e-4, 12), (1e-6, 16))
 EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
 ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
-POLISHED = 8  # ends of iterations within limits that are polished; the least of them counts
+POLISHING_STEPS = 12
+POLISHED_TOL = 1e-10  # longest step at which polishing ends
+SAME_TOL = 1e-4  # difference of velocities, in typical ones, of one and the same impact
 CANDIDATE_TOL = 1e-4  # misfit at which iterations end near an impact
 NEWTON_STEPS = 10  # from an impact to one whose known values differ within their limits
 STEP = 1e-7  # of difference quotients; smaller slopes and excesses are rounding
@@ -178,13 +180,12 @@ class Search:
             hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
         return _columns(soft, count), _columns(hard, count)
 
-    def slopes(self, point: Array) -> tuple[Array, Array]:
-        """Return derivatives of both kinds of residuals at a point, by central differences."""
-        d = len(point)
-        steps = STEP * np.concatenate([np.eye(d), -np.eye(d)])
-        tables = self._residuals_beside(point[None], steps)
-        soft, hard = ((t[0, :, :d] - t[0, :, d:]) / (2 * STEP) for t in tables)
-        return soft, hard
+    def slopes(self, points: Array) -> list[Array]:
+        """Return derivatives of both kinds of residuals at points, by central differences: point,
+        residual, coordinate."""
+        d = points.shape[1]
+        tables = self._residuals_beside(points, STEP * np.concatenate([np.eye(d), -np.eye(d)]))
+        return [(table[..., :d] - table[..., d:]) / (2 * STEP) for table in tables]
 
     def _residuals_beside(self, points: Array, steps: Array) -> list[Array]:
         """Return residuals of points moved by each step: point, residual, step."""
@@ -221,7 +222,7 @@ class Search:
                 points = np.where(better[:, None], points + step, points)
                 residual = np.where(better[:, None], trial, residual)
                 damping = np.clip(np.where(better, damping * 0.1, damping * 8), 1e-12, 1e8)
-                if (np.abs(step).max(1) < 1e-8).mean() > 0.9:
+                if (np.abs(step).max(1) < 1e-6).mean() > 0.9:
                     break
         return points
 
@@ -246,50 +247,57 @@ class Search:
         soft, hard = self.residuals(points)
         return np.concatenate([soft, hard / tolerance], 1)
 
-    def polish(self, start: Array) -> Array:
-        """Return the minimum nearby at which exact values hold (Gauss-Newton in their null
+    def polish(self, starts: Array) -> Array:
+        """Return the minima nearby at which exact values hold (Gauss-Newton in their null
         space)."""
-        point = start
-        for _ in range(12):
-            soft, hard = (table[0] for table in self.residuals(point[None]))
-            by_soft, by_hard = self.slopes(point)
-            step = np.linalg.lstsq(by_hard, -hard, rcond=STEP)[0]
-            basis = null_space(by_hard)
-            target = -(soft + by_soft @ step)
-            step = step + basis @ np.linalg.lstsq(by_soft @ basis, target, rcond=STEP)[0]
-            size = float(np.abs(step).max(initial=0.0))
-            point = point + step * min(1.0, 1.0 / max(size, 1e-300))
-            if size < 1e-12:
+        points = starts
+        for _ in range(POLISHING_STEPS):
+            soft, hard = self.residuals(points)
+            by_soft, by_hard = self.slopes(points)
+            inverse = pseudo_inverse(by_hard)
+            free = np.eye(points.shape[1]) - inverse @ by_hard
+            step = -inverse @ hard[..., None]
+            rest = soft[..., None] + by_soft @ step
+            step = (step - pseudo_inverse(by_soft @ free, by_soft) @ rest)[..., 0]
+            size = np.abs(step).max(1, keepdims=True, initial=1e-300)
+            points = points + step * np.minimum(1.0, 1.0 / size)
+            if size.max() < POLISHED_TOL:
                 break
-        _, hard = self.residuals(np.stack([start, point]))
-        before, after = np.abs(hard).max(1, initial=0.0)
+        before, after = (
+            np.abs(self.residuals(x)[1]).max(1, keepdims=True, initial=0.0)
+            for x in (starts, points)
+        )
         # a step that crosses a limit again does not count
-        return point if after <= before or after < EXACT_TOL else start
+        return np.where((after <= before) | (after < EXACT_TOL), points, starts)
 
     def follow(self, point: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Return impacts whose measured values differ from those at a point by ``moves`` (rows, in
         standard deviations), and whether Newton's method ended in one; as many values are measured
         as determine an impact."""
-        count, d = len(moves), len(point)
-        points = np.tile(point / self.sizes, (count, 1))
+        points = np.tile(point / self.sizes, (len(moves), 1))
+        spreads = [self.priors[k].sd / self.sizes[k] for k in self.places]
+        points[:, self.places] += moves[:, : len(self.places)] * spreads
         target = np.pad(moves, ((0, 0), (0, len(self.hard))))
+        rows = np.arange(len(moves))  # that have not converged
         for _ in range(NEWTON_STEPS):
-            residual = np.concatenate(self.residuals(points), 1)
-            off = residual - target
-            beside = np.concatenate(self._residuals_beside(points, STEP * np.eye(d)), 1)
-            slope = (beside - residual[:, :, None]) / STEP
-            square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(d)
+            off = np.concatenate(self.residuals(points[rows]), 1) - target[rows]
+            is_off = np.abs(off).max(1) >= CANDIDATE_TOL
+            rows, off = rows[is_off], off[is_off]
+            if not len(rows):
+                break
+            slope = np.concatenate(self.slopes(points[rows]), 1)
+            square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(self.names))
             gradient = slope.swapaxes(1, 2) @ off[..., None]
             step = -np.linalg.solve(square, gradient)[..., 0]
-            points = points + np.clip(step, -1.0, 1.0)
-            if (np.abs(step).max(1) < STEP).mean() > 0.99:
-                break
-        return points * self.sizes, np.abs(off).max(1) < CANDIDATE_TOL
+            points[rows] += np.clip(step, -1.0, 1.0)
+        is_impact = np.ones(len(moves), bool)
+        is_impact[rows] = False
+        return points * self.sizes, is_impact
 
     def describe(self, point: Array) -> Fit:
         """Return a minimum with what it leaves open and what it depends on."""
         soft, hard = self.residuals(point[None])
-        by_soft, by_limits = self.slopes(point)
+        by_soft, by_limits = (table[0] for table in self.slopes(point[None]))
         basis = null_space(by_limits[: len(self.hard)])
         u, s, vt = np.linalg.svd(by_soft @ basis)
         rank = rank_of(s)
@@ -317,7 +325,7 @@ class Search:
     def run(self, seed: int = 0) -> tuple[list[Fit], int]:
         """Return all minima found, the best first, and the number of starts that led to one."""
         if not self.names:
-            return [self.describe(self.polish(np.empty(0)))], 1
+            return [self.describe(np.empty(0))], 1
         rng = np.random.default_rng(seed)
         fits: list[Fit] = []
         ends = 0
@@ -338,40 +346,44 @@ class Search:
             around = np.repeat(near, 2, 0)
             around += rng.normal(0, 0.1, around.shape)
             points = self.descend(np.concatenate([near, around, self.starts(BATCH // 2, rng)]))
+            points = self.polish(self._in_order(points)[0])
+        points, count = self._in_order(points, ADMISSIBLE_TOL)
+        return self.describe(points[0]) if count else None
+
+    def _in_order(self, points: Array, tolerance: float = CANDIDATE_TOL) -> tuple[Array, int]:
+        """Return points at which exact values hold, those with the least sum of squares first, then
+        the others; and the number of the first."""
         soft, hard = self.residuals(points)
-        is_far = np.abs(hard).max(1, initial=0.0) >= CANDIDATE_TOL
-        order = np.lexsort([(soft**2).sum(1), is_far])[:POLISHED]
-        fits = [self.describe(self.polish(points[k])) for k in order]
-        admissible = [fit for fit in fits if fit.misfit <= ADMISSIBLE_TOL]
-        return min(admissible, key=lambda fit: fit.squares, default=None)
+        misfit = np.abs(hard).max(1, initial=0.0)
+        is_far = misfit > tolerance
+        order = np.lexsort([np.where(is_far, misfit, (soft**2).sum(1)), is_far])
+        return points[order], int((~is_far).sum())
 
     def _collect(self, ends: Array, fits: list[Fit]) -> int:
         """Add the minima at ends of iterations to ``fits``; return the number of those ends."""
-        soft, hard = self.residuals(ends)
-        is_far = np.abs(hard).max(1, initial=0.0) >= CANDIDATE_TOL
-        for k in np.lexsort([(soft**2).sum(1), is_far]):
-            if is_far[k] and fits:
-                break
-            if not self._is_seen(fits, ends[k], 1e-4) and len(fits) < MAX_IMPACTS:
-                fit = self.describe(self.polish(ends[k]))
-                if not self._is_seen(fits, fit.point / self.sizes, 1e-6):
-                    fits.append(fit)
-        return int((~is_far).sum())
+        points, count = self._in_order(ends)
+        points = self.polish(points[: count or 1])
+        for fit in fits:
+            points = points[~self._leads_to(fit, points)]
+        while len(points) and len(fits) < (MAX_IMPACTS if count else 1):
+            fits.append(self.describe(points[0]))
+            points = points[~self._leads_to(fits[-1], points)]
+        return count
 
-    def _is_seen(self, fits: list[Fit], point: Array, close: float) -> bool:
-        """Return True for a point that leads to an impact in ``fits``: one equal in all that is
-        determined or, of measurements, one without a ridge between."""
-        key = self.invariants(point[None])[:, 0]
-        if any((np.abs(fit.key - key)[fit.settled] < close).all() for fit in fits):
-            return True
-        if not (fits and self.measured):
-            return False
-        ends = np.stack([fit.point / self.sizes for fit in fits])
-        soft, hard = self.residuals(np.concatenate([ends, (ends + point) / 2, point[None]]))
-        height = (soft**2).sum(1) + ((hard / TYPED_TOL) ** 2).sum(1)
-        count = len(fits)
-        between = height[count : 2 * count]
-        return bool((between <= np.maximum(height[:count], height[-1]) + RIDGE).any())
+    def _leads_to(self, fit: Fit, points: Array) -> NDArray[np.bool_]:
+        """Return True for points that lead to an impact: one equal in all that is determined or, of
+        measurements, one without a ridge between."""
+        keys = self.invariants(points).T
+        is_seen = (np.abs(keys - fit.key)[:, fit.settled] < SAME_TOL).all(1)
+        if self.measured:
+            end = fit.point / self.sizes
+            between = self._heights((points + end) / 2)
+            is_seen |= between <= np.maximum(self._heights(points), self._heights(end[None])) + RIDGE
+        return np.asarray(is_seen)
+
+    def _heights(self, points: Array) -> Array:
+        soft, hard = self.residuals(points)
+        return np.asarray((soft**2).sum(1) + ((hard / TYPED_TOL) ** 2).sum(1))
 
     def invariants(self, points: Array) -> Array:
         """Return all velocities (rows) of impacts (columns) in typical ones, which tell impacts
@@ -395,6 +407,15 @@ def null_space(matrix: Array) -> Array:
     """Return an orthonormal basis (columns) of what a matrix maps to 0."""
     _, s, vt = np.linalg.svd(matrix)
     return np.asarray(vt[rank_of(s) :].T)
+
+
+def pseudo_inverse(matrices: Array, scale: Array | None = None) -> Array:
+    """Return pseudo-inverses; singular values that are rounding of ``scale`` (by default of the
+    matrices themselves) count as 0."""
+    u, s, vt = np.linalg.svd(matrices, full_matrices=False)
+    size = np.abs(matrices if scale is None else scale).max((1, 2), initial=1e-300)
+    inverse = np.where(s > STEP * size[:, None], 1.0 / np.maximum(s, 1e-300), 0.0)
+    return np.asarray((vt.swapaxes(1, 2) * inverse[:, None]) @ u.swapaxes(1, 2))
 
 
 def rank_of(sizes: Array) -> int:

@@ -28,6 +28,14 @@ VEHICLES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA")
 SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 FORCES = ("PDOFA", "PDOFB")
+EVERY = (
+    *BEFORE,
+    *AFTER,
+    *"SA HA SB HB SAF HAF SBF HBF E MUP EM PN PT PM P DVA DVB DVAF DVAR DVBF DVBR".split(),
+    *"PDOFA PDOFB VC VS KI KF EL LOSS DT MUC RR0 ELN ELT ELM EESA EESB".split(),
+    *"XA YA XB YB XAF YAF XBF YBF CAX CAY CBX CBY".split(),
+)
+"""Results of an impact, in the order shown."""
 
 
 class Impacts:
@@ -53,9 +61,9 @@ class Impacts:
             self.values.update(values, **dict.fromkeys(missing, np.nan))
 
     def __getitem__(self, name: str) -> Any:
-        """Return a quantity by name."""
+        """Return a quantity by name; the first that is not there is computed with all results."""
         if name not in self.values:
-            self.compute((name,))
+            self.compute((*EVERY, name))
         return self.values[name]
 
 

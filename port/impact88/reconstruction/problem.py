@@ -122,7 +122,9 @@ class Problem:
         ]
         self.lines = [n for n in COURSES if n in known and (n in names or not known[n].varies)]
         self.powers = self._powers_of_speeds(names)
-        self.needed = (*MARGIN_INPUTS, *(item.name for item in self.observed))
+        along = [name for course in self.lines for name in (course, COURSES[course])]
+        observed = [item.name for item in self.observed]
+        self.needed = tuple(dict.fromkeys([*MARGIN_INPUTS, *observed, *along, *self.powers]))
 
     # -- what is known, completed
 
@@ -399,6 +401,7 @@ class Problem:
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
             impacts = Impacts(with_arms({"M": 4.0 if self.point else 6.0, **values}))
+            impacts.compute([n for v in self.facing for n in ("S" + v, "H" + v, f"H{v}F")])
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 is_at_rest = impacts["S" + vehicle] < TOUCH * self.speed
                 course = np.where(is_at_rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
@@ -425,19 +428,19 @@ class Problem:
         It is flat over a speed and a course before the impact if one of them is known, else over
         components; of the coordinates' polar area and of misfits across a line come the others."""
         polar = {frame[0] for frame in self.frames.values()}
-        return {
+        powers = {
             speed: (speed in polar)
             + (course in self.lines and course not in names)
             - (course in ("HA", "HB") and not self.known.keys().isdisjoint((speed, course)))
             for course, speed in COURSES.items()
         }
+        return {speed: power for speed, power in powers.items() if power}
 
     def log_density(self, impacts: Impacts) -> Any:
         """Return the log of the flat density of impacts, per unit of the coordinates."""
         total = impacts.log_volume
         for speed, power in self.powers.items():
-            if power:
-                total = total + power * np.log(impacts[speed] + 1e-300)
+            total = total + power * np.log(impacts[speed] + 1e-300)
         return total
 
     def misfit(self, impacts: Impacts, item: Known) -> Any:
