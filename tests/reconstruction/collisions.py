@@ -1,11 +1,14 @@
 """Collisions for tests: random possible impacts, and the files of the guide."""
 
+from functools import cache
+
 import numpy as np
 
 from impact88.mechanics.inverse import complete
 from impact88.mechanics.laws import margins
 from impact88.mechanics.solve import evaluate
 from impact88.names import FINAL_STATE, VELOCITIES
+from impact88.reconstruction.answer import reconstruct
 
 UNKNOWNS = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 VEHICLES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA")
@@ -37,6 +40,12 @@ INTERSECTION = {
     **{"M": 4, "MA": 1800, "MB": 1200, "HA": 0, "HB": -90},
     **{"SAF": 50, "HAF": -40, "SBF": 30, "HBF": -30},
 }
+
+
+@cache
+def section_vii():
+    """Return the reconstruction of Section VII with draws."""
+    return reconstruct(SECTION_VII, samples=4000)[0]
 
 
 def random_impact(rng):

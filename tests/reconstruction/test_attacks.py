@@ -102,9 +102,9 @@ def test_given_coefficients_lie_in_their_ranges(name: str, value: float, message
 
 def test_ranges_of_motions_left_open_are_named() -> None:
     entries = {**POINTS, "SA": 20, "HA": 0, "HB": 90, "DVA": "9 +- 1"}
-    answer = impact88.reconstruct(entries, samples=2000)[0]
-    for name in {"SB"} & {*answer.undetermined}:
-        assert "20 times" in answer.assumed[name]
+    answer = impact88.reconstruct(entries, samples=0)[0]
+    assert "SB" in answer.undetermined
+    assert "20 times" in answer.assumed["SB"]
 
 
 def test_share_of_the_critical_friction_lies_in_its_interval() -> None:

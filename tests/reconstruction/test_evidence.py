@@ -40,8 +40,8 @@ def measurements():
     return entries, {name: float(x) for name, x in consequences.items()}
 
 
+@pytest.mark.parametrize("times", [5, pytest.param(50, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("times", [0.9, 5, 50])
 def test_a_value_at_odds_is_named_with_its_amount(measurements, kind, times):
     entries, truth = measurements
     if kind in ("SAF", "HAF"):
@@ -51,14 +51,19 @@ def test_a_value_at_odds_is_named_with_its_amount(measurements, kind, times):
     shift = min(times * tolerance, 150.0) if kind in ("HAF", "PDOFA") else times * tolerance
     entries = {**entries, kind: _within(truth[kind] + shift, tolerance)}
     result = reconstruct(entries, samples=0)[0]
-    if times < 1:
-        assert result.verdict in ("agrees", "at a limit")
-        return
     assert result.verdict == "contradictory"
     assert kind in result.evidence.at_odds
     test = result.tests[kind]
     assert abs(test.by_others - truth[kind]) < tolerance
     assert f"{kind} " in evidence(result)
+
+
+def test_values_within_their_tolerances_agree(measurements):
+    entries, truth = measurements
+    shifted = {kind: _within(truth[kind] + 0.9 * tol, tol) for kind, tol in KINDS.items()}
+    result = reconstruct(entries | shifted, samples=0)[0]
+    assert result.verdict in ("agrees", "at a limit")
+    assert {*KINDS} <= {*result.tests}
 
 
 def test_the_law_that_misses_is_named_with_its_amount():
@@ -79,7 +84,7 @@ def test_the_law_that_misses_is_named_with_its_amount():
 def test_values_that_agree_but_for_the_rounding_of_what_was_typed():
     vehicles, truth = random_impact(np.random.default_rng(3))
     rounded_values = {name: float(f"{truth[name]:.5g}") for name in MOTION}
-    result = reconstruct({**vehicles, **rounded_values})[0]
+    result = reconstruct({**vehicles, **rounded_values}, samples=0)[0]
     assert result.verdict == "agrees"
     assert result.values["E"] == pytest.approx(truth["E"], abs=0.01)
 
@@ -211,7 +216,7 @@ def test_nearest_impact_within_physics_is_that_of_another_method(number):
             constraints=[{"type": "ineq", "fun": within}],
             method="SLSQP",
         )
-        for k in range(6)
+        for k in range(4)
     ]
     best = min(end.fun for end in ends if within(end.x).min() > -1e-7)
     answer = Search(problem, limited=True).nearest([search.run()[0][0].point])

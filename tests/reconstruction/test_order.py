@@ -7,18 +7,7 @@ from collisions import UNKNOWNS, VEHICLES, random_impact
 from impact88.reconstruction.answer import reconstruct
 
 MIRRORED = ("UY", "WA", "VY", "WB", "VAY", "WAF", "VBY", "WBF", "MUP", "PA", "PB", "TA", "TB", "GA")
-PAIRS = (
-    "UX VX",
-    "UY VY",
-    "WA WB",
-    "VAX VBX",
-    "VAY VBY",
-    "WAF WBF",
-    "MA MB",
-    "IA IB",
-    "DA DB",
-    "PA PB",
-)
+PAIRS = "UX VX, UY VY, WA WB, VAX VBX, VAY VBY, WAF WBF, MA MB, IA IB, DA DB, PA PB".split(", ")
 OTHER = {a: b for pair in PAIRS for a, b in (pair.split(), pair.split()[::-1])}
 FOOT = 0.3048
 SLUG = 14.5939

@@ -19,6 +19,7 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
+from .densities import quantile
 from .draws import Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
@@ -128,6 +129,8 @@ class Reconstruction:
         Number of impacts that agree with what is known.
     draws : mapping of str to ndarray
         Random draws by result; empty if there are none.
+    sampling_error : float
+        Largest Monte Carlo standard error of an interval's end, relative to the interval's width.
     evidence : Evidence
         Agreement of the known values.
     laws : tuple of MissedLaw
@@ -167,6 +170,7 @@ class Reconstruction:
     tests: Mapping[str, Test] = field(default_factory=dict)
     solutions: int = 1
     draws: Mapping[str, Array] = field(default_factory=dict)
+    sampling_error: float = 0.0
     evidence: Evidence = Evidence(0.0, 0, 1.0)
     laws: tuple[MissedLaw, ...] = ()
     broken: Mapping[str, float] = field(default_factory=dict)
@@ -267,7 +271,7 @@ def reconstruct(
     choice = _choose(problems, seed)
     results = [
         replace(
-            _describe(fit, verdict, contact_time),
+            _describe(fit, verdict),
             search=choice.search,
             solutions=choice.number,
             known={name: amount for name, amount in amounts.items() if name != "M"},
@@ -284,7 +288,21 @@ def reconstruct(
     if samples and not results[0].is_adverse:
         fits = [fit for fit, _ in choice.fits]
         results = _with_draws(results, fits, samples, seed)
-    return results
+    return [_with_forces(result, contact_time) for result in results] if contact_time else results
+
+
+def _with_forces(result: Reconstruction, duration: float) -> Reconstruction:
+    """Return a result with the average force over a duration of contact, and the largest of two
+    courses of the force (chapter, Section III)."""
+    if "P" not in result.values:
+        return result
+    values, intervals = {**result.values, "TF": duration}, {**result.intervals}
+    for name, times in (("FA", 1.0), ("FM2", 2.0), ("FM3", 3.0)):
+        values[name] = times * values["P"] / duration
+        if "P" in intervals:
+            low, high = intervals["P"]
+            intervals[name] = times * low / duration, times * high / duration
+    return replace(result, values=values, intervals=intervals)
 
 
 # -- which impacts
@@ -390,7 +408,7 @@ def _best_within_limits(
 # -- one impact
 
 
-def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruction:
+def _describe(fit: Fit, verdict: str) -> Reconstruction:
     """Return an impact with everything that is determined, and first-order intervals."""
     problem = fit.problem
     names = [name for name in result_names(problem) if _exists(fit, name)]
@@ -399,18 +417,13 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
     values = {name: _without_noise(name, fit.value(name), problem.size(name)) for name in names}
     count = fit.open_directions.shape[1]
     slopes = {name: fit.slopes(name)[count:] for name in names}
-    if contact_time is not None and "P" in values:
-        values["TF"] = contact_time
-        for name, times in (("FA", 1.0), ("FM2", 2.0), ("FM3", 3.0)):  # chapter, Section III
-            values[name] = times * values["P"] / contact_time
-            slopes[name] = times * slopes["P"] / contact_time
     intervals: dict[str, tuple[float, float]] = {}
     drivers: dict[str, dict[str, float]] = {}
     if verdict not in ADVERSE:  # the numbers of an adverse one settle nothing
         reach = NormalDist().inv_cdf(INTERVAL[1])
         for name, slope in slopes.items():
             sd = float(np.sqrt(np.square(slope).sum()))
-            if sd > TIE * abs(values[name]):
+            if sd > TIE * problem.size(name):
                 intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
     vehicles = {name: fit.value(name) for name in VEHICLES}
@@ -565,7 +578,7 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
             if abs(np.clip(adjusted, low, high) - adjusted) > RESULT_STEP * item.sd:
                 return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
-    columns, intervals = {}, dict(result.intervals)
+    columns, intervals, error = {}, dict(result.intervals), 0.0
     for name in result_names(draws.target.problem):
         if name not in result.values and name not in result.undetermined:
             continue
@@ -573,13 +586,15 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         if np.isfinite(column).all():
             columns[name] = column
             if name in result.undetermined or name in intervals:
-                intervals[name] = _interval(
-                    column, result.values.get(name, float(np.median(column)))
-                )
+                middle = result.values.get(name, float(quantile(column, 0.5)))
+                intervals[name] = low, high = _interval(column, middle)
+                errors = [draws.standard_error(column, end) for end in (low, high)]
+                error = max(error, max(errors) / max(high - low, 1e-300))
     return replace(
         result,
         intervals=intervals,
         draws=columns,
+        sampling_error=error,
         assumed=_with_ends(result.assumed, columns),
     )
 
@@ -589,7 +604,7 @@ def _interval(column: Array, value: float) -> tuple[float, float]:
     if it would lie outside."""
     rank = float((column < value).mean())
     level = float(np.clip(INTERVAL[0], rank - (INTERVAL[1] - INTERVAL[0]), rank))
-    low, high = np.quantile(column, (level, min(level + INTERVAL[1] - INTERVAL[0], 1.0))).tolist()
+    low, high = quantile(column, (level, min(level + INTERVAL[1] - INTERVAL[0], 1.0))).tolist()
     return min(low, value), max(high, value)
 
 
@@ -599,7 +614,7 @@ def _with_ends(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict
     words = dict(assumed)
     for name in {*RANGES} & {*assumed} & {*columns}:
         low, high = RANGES[name]
-        pairs = zip((low, high), np.quantile(columns[name], INTERVAL).tolist(), strict=True)
+        pairs = zip((low, high), quantile(columns[name], INTERVAL).tolist(), strict=True)
         ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED * (high - low)]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"

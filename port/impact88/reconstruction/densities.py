@@ -63,6 +63,12 @@ def _quantile_table(amount: Amount) -> tuple[Array, Array]:
     return variates, np.interp(shares, [0.0, *(sums / sums[-1])], values)
 
 
+def quantile(column: Array, levels: float | tuple[float, ...]) -> Array:
+    """Return quantiles of the values that are numbers, by linear interpolation."""
+    ordered = np.sort(column[np.isfinite(column)])
+    return np.asarray(np.interp(levels, np.linspace(0.0, 1.0, len(ordered)), ordered))
+
+
 def draw_correlated(
     amounts: Mapping[str, Amount],
     count: int,

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.laws import MAX_FRICTION
-from .densities import draw, log_density
+from .densities import draw, log_density, quantile
 from .fit import Fit
 from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array, Impacts
 from .problem import RANGES, WIDEST, Known, Problem
@@ -50,13 +50,18 @@ class State(NamedTuple):
 
 @dataclass
 class Sample:
-    """Draws: ``points`` (rows) over the coordinates of ``target``.
-
-    ``families``: number of independent particles that the draws descend from."""
+    """Draws: ``points`` (rows) over the coordinates of ``target``, and the number of the particle
+    of the prior that each descends from."""
 
     target: Target
     points: Array
-    families: float
+    family: NDArray[np.int64]
+
+    @property
+    def families(self) -> float:
+        """Number of independent particles that the draws descend from."""
+        sizes = np.bincount(self.family)
+        return float(sizes.sum() ** 2 / (sizes**2).sum())
 
     @cached_property
     def impacts(self) -> Impacts:
@@ -66,6 +71,15 @@ class Sample:
     def __getitem__(self, name: str) -> Array:
         """Return the values of a quantity."""
         return np.broadcast_to(self.impacts[name], len(self.points))
+
+    def standard_error(self, column: Array, end: float) -> float:
+        """Return the Monte Carlo standard error of a quantile, from the scatter of the families
+        (Lee and Whiteley 2018); of independent draws it is the binomial one."""
+        is_below = column < end
+        share = is_below.mean()
+        error = np.sqrt((np.bincount(self.family, is_below - share) ** 2).sum()) / len(column)
+        low, high = quantile(column, (max(share - error, 0.0), min(share + error, 1.0)))
+        return float(high - low) / 2
 
 
 class Target:
@@ -195,15 +209,13 @@ def sample(
         state, scale = _move(target, state, power, scale, moves, rng)
     if state.holds.sum() < MIN_FAMILIES:
         return None
-    points = [state.points[state.holds]]
+    points, families = [state.points[state.holds]], [family[state.holds]]
     while sum(map(len, points)) < count and len(points) < MAX_ROUNDS:
         state, scale = _move(target, state, power, scale, STAGE_MOVES, rng)
         points.append(state.points[state.holds])
-    sizes = np.bincount(family)
-    families = float(sizes.sum() ** 2 / (sizes**2).sum())
-    if families < MIN_FAMILIES:
-        return None
-    return Sample(target, np.concatenate(points)[:count], families)
+        families.append(family[state.holds])
+    draws = Sample(target, np.concatenate(points)[:count], np.concatenate(families)[:count])
+    return draws if draws.families >= MIN_FAMILIES else None
 
 
 def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
@@ -219,7 +231,7 @@ def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
     impacts = target.impacts(points)
     is_allowed = np.all([row >= 0 for _, row in fit.problem.margins(impacts)], axis=0)
     points = points[is_allowed]
-    return Sample(target, points, len(points)) if len(points) >= MIN_FAMILIES else None
+    return Sample(target, points, np.arange(len(points))) if len(points) >= MIN_FAMILIES else None
 
 
 def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | None:
@@ -278,11 +290,11 @@ def _move(
     points = state.points
     total = 0.0
     for rounds in range(MAX_ROUNDS):
-        first, second = rng.integers(0, count, (2, count))
+        first, second, third = rng.integers(0, count, (3, count))
         jump = JUMP / np.sqrt(2 * d) * scale * np.exp(rng.normal(0, 0.5, (count, 1)))
         jump[rng.random(count) < MODE_JUMPS] = 1.0
         proposal = points + jump * (points[first] - points[second])
-        proposal += 1e-6 * (points[first] - points[rng.permutation(count)])
+        proposal += 1e-6 * (points[first] - points[third])
         angles = proposal[:, target.circular]
         proposal[:, target.circular] = (angles + 180) % 360 - 180
         new = target(proposal)

@@ -273,26 +273,28 @@ class Search:
     def follow(self, point: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Return impacts whose measured values differ from those at a point by ``moves`` (rows, in
         standard deviations), and whether Newton's method ended in one; as many values are measured
-        as determine an impact."""
+        as determine an impact. Coordinates that are measured are set, the others follow."""
         points = np.tile(point / self.sizes, (len(moves), 1))
         spreads = [self.priors[k].sd / self.sizes[k] for k in self.places]
         points[:, self.places] += moves[:, : len(self.places)] * spreads
         target = np.pad(moves, ((0, 0), (0, len(self.hard))))
-        rows = np.arange(len(moves))  # that have not converged
+        free = np.delete(np.arange(len(self.names)), self.places)
+        steps = STEP * np.eye(len(self.names))[free]
+        rows, misfit = np.arange(len(moves)), np.zeros(len(moves))
         for _ in range(NEWTON_STEPS):
-            off = np.concatenate(self.residuals(points[rows]), 1) - target[rows]
-            is_off = np.abs(off).max(1) >= CANDIDATE_TOL
-            rows, off = rows[is_off], off[is_off]
-            if not len(rows):
+            residual = np.concatenate(self.residuals(points[rows]), 1)
+            off = residual - target[rows]
+            misfit[rows] = np.abs(off).max(1, initial=0.0)
+            is_open = misfit[rows] > EXACT_TOL
+            rows, residual, off = rows[is_open], residual[is_open], off[is_open]
+            if not (len(rows) and len(free)):
                 break
-            slope = np.concatenate(self.slopes(points[rows]), 1)
-            square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(self.names))
-            gradient = slope.swapaxes(1, 2) @ off[..., None]
-            step = -np.linalg.solve(square, gradient)[..., 0]
-            points[rows] += np.clip(step, -1.0, 1.0)
-        is_impact = np.ones(len(moves), bool)
-        is_impact[rows] = False
-        return points * self.sizes, is_impact
+            beside = np.concatenate(self._residuals_beside(points[rows], steps), 1)
+            slope = (beside - residual[:, :, None]) / STEP
+            square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(free))
+            step = -np.linalg.solve(square, slope.swapaxes(1, 2) @ off[..., None])[..., 0]
+            points[np.ix_(rows, free)] += np.clip(step, -1.0, 1.0)
+        return points * self.sizes, misfit < CANDIDATE_TOL
 
     def describe(self, point: Array) -> Fit:
         """Return a minimum with what it leaves open and what it depends on."""
@@ -378,7 +380,9 @@ class Search:
         if self.measured:
             end = fit.point / self.sizes
             between = self._heights((points + end) / 2)
-            is_seen |= between <= np.maximum(self._heights(points), self._heights(end[None])) + RIDGE
+            is_seen |= (
+                between <= np.maximum(self._heights(points), self._heights(end[None])) + RIDGE
+            )
         return np.asarray(is_seen)
 
     def _heights(self, points: Array) -> Array:

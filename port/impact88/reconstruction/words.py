@@ -215,6 +215,12 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
                 f"{impacts - result.solutions} left out: against physics or the sense of the "
                 "friction, or far less likely"
             )
+    if result.draws:
+        count = len(next(iter(result.draws.values())))
+        lines.append(
+            f"intervals are those of {count:,} random draws; Monte Carlo standard error of their "
+            f"ends: at most {100 * result.sampling_error:.2g} % of the width"
+        )
     for reason in dict.fromkeys(result.excluded.values()):
         names = [name for name in result.excluded if result.excluded[name] == reason]
         verb = "need" if len(names) > 1 else "needs"

@@ -221,11 +221,18 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         for name, amount in sorted(case.entries.items())
     }
     outputs = [name for name in values if name in BOUNDED]
-    sample = bounds(inputs, outputs, samples=DRAWS, seed=seed, correlations=case.correlations)
+    sample = bounds(
+        inputs,
+        outputs,
+        samples=DRAWS,
+        seed=seed,
+        correlations=case.correlations,
+        limits=False,  # the answer has intervals only
+    )
     varying = {
         name: bound
         for name, bound in sample.outputs.items()
-        if bound.upper - bound.lower > NOISE * abs(bound.nominal)
+        if bound.interval[1] - bound.interval[0] > NOISE * abs(bound.nominal)
     }
     squares = {
         name: {n: effect * effect for n, effect in bound.drivers.items()}
