@@ -32,6 +32,7 @@ LIMITED_STAGES = ((1e-1, 12), (1e-2, 12), (1e-3, 12), (1e-4, 12), (1e-6, 16))
 EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
 TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
 ADMISSIBLE_TOL = 1e-5  # misfit of exact values and limits of an admissible impact, in typical sizes
+CONVERGED = 0.9  # proportion of iterations at their ends, from which the others do not count
 POLISHING_STEPS = 12
 POLISHED_TOL = 1e-10  # longest step at which polishing ends
 SAME_TOL = 1e-4  # difference of velocities, in typical ones, of one and the same impact
@@ -61,8 +62,6 @@ class Fit:
         Number of directions that measured values determine, along the limits.
     leverage : ndarray
         Leverage of each measured value on itself.
-    key, settled : ndarray
-        All velocities, and which of them known values determine.
     """
 
     search: Search
@@ -73,8 +72,6 @@ class Fit:
     sensitivity: Array
     rank: int
     leverage: Array
-    key: Array
-    settled: NDArray[np.bool_]
 
     @property
     def problem(self) -> Problem:
@@ -96,6 +93,16 @@ class Fit:
     def impacts(self) -> Impacts:
         """The impact."""
         return self.problem.impacts(self.search.names, self.point[None])
+
+    @cached_property
+    def key(self) -> Array:
+        """All velocities, which tell impacts apart."""
+        return self.search.invariants(self.point[None] / self.search.sizes)[:, 0]
+
+    @cached_property
+    def settled(self) -> list[bool]:
+        """For each velocity, True if known values determine it."""
+        return [not self.is_open(name) for name in (*BEFORE, *AFTER)]
 
     @cached_property
     def _nearby(self) -> tuple[Array, Impacts]:
@@ -209,10 +216,7 @@ class Search:
 
     def descend(self, points: Array) -> Array:
         """Return the ends of Levenberg-Marquardt iterations."""
-        has_both = self.measured and (self.hard or self.limited)
-        last = (STAGES[-1][0], sum(iterations for _, iterations in STAGES))
-        stages = LIMITED_STAGES if self.limited else STAGES
-        for tolerance, iterations in stages if has_both else (last,):
+        for tolerance, iterations in LIMITED_STAGES if self.limited else STAGES:
             damping = np.full(len(points), 1e-2)
             residual = self._all_residuals(points, tolerance)
             for _ in range(iterations):
@@ -222,7 +226,7 @@ class Search:
                 points = np.where(better[:, None], points + step, points)
                 residual = np.where(better[:, None], trial, residual)
                 damping = np.clip(np.where(better, damping * 0.1, damping * 8), 1e-12, 1e8)
-                if (np.abs(step).max(1) < 1e-6).mean() > 0.9:
+                if (np.abs(step).max(1) < 1e-6).mean() > CONVERGED:
                     break
         return points
 
@@ -230,22 +234,29 @@ class Search:
         self, points: Array, residual: Array, tolerance: float, damping: Array
     ) -> Array:
         """Return a Levenberg-Marquardt step of each point, at most 2 typical sizes long."""
-        d = points.shape[1]
-        soft, hard = self._residuals_beside(points, STEP * np.eye(d))
-        slope = np.concatenate([soft, hard / tolerance], 1) - residual[:, :, None]
-        slope /= STEP
+        slope = self._forward_slopes(points, residual, tolerance, [])
         square = np.einsum("nij,nik->njk", slope, slope)
         gradient = np.einsum("nij,ni->nj", slope, residual)
         diagonal = np.einsum("njj->nj", square)
         floor = 1e-8 * diagonal.max(1, keepdims=True) + 1e-30
-        square = square + (damping[:, None] * (diagonal + floor))[:, :, None] * np.eye(d)
+        square = square + (damping[:, None] * (diagonal + floor))[:, :, None] * np.eye(
+            points.shape[1]
+        )
         step = -np.linalg.solve(square, gradient[..., None])[..., 0]
         length = np.maximum(np.abs(step).max(1, keepdims=True), 1e-300)
         return np.asarray(step * np.minimum(1.0, 2.0 / length))
 
-    def _all_residuals(self, points: Array, tolerance: float) -> Array:
+    def _all_residuals(self, points: Array, tolerance: float = 1.0) -> Array:
         soft, hard = self.residuals(points)
         return np.concatenate([soft, hard / tolerance], 1)
+
+    def _forward_slopes(
+        self, points: Array, residual: Array, tolerance: float, fixed: list[int]
+    ) -> Array:
+        """Return derivatives of all residuals by coordinates that are not fixed."""
+        steps = np.delete(STEP * np.eye(points.shape[1]), fixed, 0)
+        soft, hard = self._residuals_beside(points, steps)
+        return (np.concatenate([soft, hard / tolerance], 1) - residual[:, :, None]) / STEP
 
     def polish(self, starts: Array) -> Array:
         """Return the minima nearby at which exact values hold (Gauss-Newton in their null
@@ -279,21 +290,15 @@ class Search:
         points[:, self.places] += moves[:, : len(self.places)] * spreads
         target = np.pad(moves, ((0, 0), (0, len(self.hard))))
         free = np.delete(np.arange(len(self.names)), self.places)
-        steps = STEP * np.eye(len(self.names))[free]
-        rows, misfit = np.arange(len(moves)), np.zeros(len(moves))
         for _ in range(NEWTON_STEPS):
-            residual = np.concatenate(self.residuals(points[rows]), 1)
-            off = residual - target[rows]
-            misfit[rows] = np.abs(off).max(1, initial=0.0)
-            is_open = misfit[rows] > EXACT_TOL
-            rows, residual, off = rows[is_open], residual[is_open], off[is_open]
-            if not (len(rows) and len(free)):
+            residual = self._all_residuals(points)
+            misfit = np.abs(residual - target).max(1)
+            if not len(free) or (misfit < EXACT_TOL).all():
                 break
-            beside = np.concatenate(self._residuals_beside(points[rows], steps), 1)
-            slope = (beside - residual[:, :, None]) / STEP
+            slope = self._forward_slopes(points, residual, 1.0, self.places)
             square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(free))
-            step = -np.linalg.solve(square, slope.swapaxes(1, 2) @ off[..., None])[..., 0]
-            points[np.ix_(rows, free)] += np.clip(step, -1.0, 1.0)
+            gradient = slope.swapaxes(1, 2) @ (residual - target)[..., None]
+            points[:, free] -= np.clip(np.linalg.solve(square, gradient)[..., 0], -1.0, 1.0)
         return points * self.sizes, misfit < CANDIDATE_TOL
 
     def describe(self, point: Array) -> Fit:
@@ -308,9 +313,6 @@ class Search:
         # a limit at which it lies checks known values, but makes none more certain
         directions, sizes, _ = np.linalg.svd(by_soft @ null_space(by_limits))
         limited_rank = rank_of(sizes)
-        steps = 1e-5 * open_directions.T
-        velocities = self.invariants(point + np.concatenate([steps, -steps]))
-        changes = velocities[:, : len(steps)] - velocities[:, len(steps) :]
         return Fit(
             search=self,
             point=point * self.sizes,
@@ -320,8 +322,6 @@ class Search:
             sensitivity=sensitivity * self.sizes[:, None],
             rank=limited_rank,
             leverage=np.square(directions[:, :limited_rank]).sum(1),
-            key=self.invariants(point[None])[:, 0],
-            settled=np.all(np.abs(changes) < 1e-9, axis=1),
         )
 
     def run(self, seed: int = 0) -> tuple[list[Fit], int]:
@@ -392,12 +392,9 @@ class Search:
     def invariants(self, points: Array) -> Array:
         """Return all velocities (rows) of impacts (columns) in typical ones, which tell impacts
         apart."""
-        problem = self.problem
-        impacts = problem.impacts(self.names, points * self.sizes)
-        spin = problem.gyration
-        scales = np.array([1.0, 1.0, spin] * 4)[:, None] / problem.speed
-        velocities = [impacts[name] for name in (*BEFORE, *AFTER)]
-        return np.stack([np.broadcast_to(x, len(points)) for x in velocities]) * scales
+        impacts = self.problem.impacts(self.names, points * self.sizes)
+        velocities = [impacts[name] / self.problem.size(name) for name in (*BEFORE, *AFTER)]
+        return np.stack([np.broadcast_to(x, len(points)) for x in velocities])
 
 
 def expected_unseen(minima: int, starts: int) -> float:
