@@ -74,14 +74,15 @@ def test_a_barrier_rests() -> None:
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("E", -1e-06, "E is -1e-06; expected E from 0 to 1"),
+        ("E", -1e-06, "E is -1e-06; expected 0 to 1"),
         ("E", 0, ""),
         ("E", 1, ""),
-        ("E", 1.001, "E is 1.001; expected E from 0 to 1"),
-        ("EM", -1.001, "EM is -1.001; expected E from 0 to 1 and EM from -1 to 0, or 1 for"),
+        ("E", 1.001, "E is 1.001; expected 0 to 1"),
+        ("EM", -1.001, "EM is -1.001; expected -1 to 0, or 1 for no"),
         ("EM", -1, ""),
         ("EM", 0, ""),
-        ("EM", 0.001, "EM is 0.001; expected E from 0 to 1 and EM from -1 to 0, or 1 for"),
+        ("EM", 0.5, "EM is 0.5; expected -1 to 0, or 1 for no moment"),
+        ("EM", 0.001, "EM is 0.001; expected -1 to 0, or 1 for no"),
         ("EM", 1, ""),
     ],
 )

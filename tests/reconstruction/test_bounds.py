@@ -94,6 +94,7 @@ def test_inputs_that_no_wanted_result_uses_need_not_be_given():
         ({"MX": 3}, "MX"),
         ({"MB": float("nan")}, "MB"),
         ({"E": "many"}, "E"),
+        ({"M": 5}, "M is 5; expected 6 for bodies or 4 for point masses"),
     ],
 )
 def test_what_cannot_be_used(change, words):

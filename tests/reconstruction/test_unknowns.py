@@ -72,6 +72,8 @@ def test_point_masses_and_what_is_missing():
     assert solution["VX"] == pytest.approx(8.0)
     with pytest.raises(UserError, match="missing MB"):
         impact88.solve_for({"MA": 3})
+    with pytest.raises(UserError, match="M is 5; expected 6 for bodies or 4"):
+        impact88.solve_for({**entries, "M": [4, 5]})
     with pytest.raises(UserError, match="UZ"):
         impact88.solve_for({**entries, "UZ": 3})
 

@@ -27,8 +27,9 @@ def answer_lines(answer: Answer) -> Iterator[str]:
         yield ""
         if len(impacts) > 1:
             yield f"IMPACT {number} OF {len(impacts)}"
-        yield from _result_lines(impact)
-    yield ""
+        if impact.found:
+            yield from _result_lines(impact)
+            yield ""
     sections = [(name.upper(), LABEL, texts) for name, texts in answer.sections.items()]
     for label, width, texts in (*sections, ("!", 2, answer.warnings), ("-", 2, answer.remarks)):
         for text in texts:

@@ -226,7 +226,7 @@ class Search:
                 points = np.where(better[:, None], points + step, points)
                 residual = np.where(better[:, None], trial, residual)
                 damping = np.clip(np.where(better, damping * 0.1, damping * 8), 1e-12, 1e8)
-                if (np.abs(step).max(1) < 1e-6).mean() > CONVERGED:
+                if (np.abs(step).max(1) < 1e-8).mean() > CONVERGED:
                     break
         return points
 

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ..cases.amounts import Amount, read
 from ..cases.case import Case, entry_text
 from ..errors import UserError, quoted
+from ..mechanics.solve import BODIES, POINT
 from ..names import check_names
 
 ABOVE_ZERO = ("MA", "MB", "IA", "IB")
@@ -27,8 +31,8 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     Raises
     ------
     UserError
-        For an unknown name, a value that is no amount, and limits of a mass or an inertia that
-        reach 0.
+        For an unknown name, a value that is no amount, another M than 6 or 4, and limits of a mass
+        or an inertia that reach 0.
     """
     if not isinstance(known, Mapping):
         raise UserError(f"{quoted(known)} is not a mapping; expected names with their values")
@@ -43,4 +47,11 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     for name in ABOVE_ZERO:
         if name in entries and entries[name].varies and entries[name].limits()[0] <= 0:
             raise UserError(f"{name} is known within limits that reach 0; expected limits above 0")
+    check_equations(entries["M"].value if "M" in entries else BODIES)
     return entries
+
+
+def check_equations(m: ArrayLike) -> None:
+    """Raise UserError for values of M that are neither 6, of bodies, nor 4, of point masses."""
+    for value in {*np.ravel(m).tolist()} - {BODIES, POINT}:
+        raise UserError(f"M is {value:g}; expected 6 for bodies or 4 for point masses")

@@ -91,10 +91,7 @@ class Problem:
         self.without_plane = self.without_arms = False
         self.original = dict(known)
         self.known = known = dict(known)
-        kind = known.pop("M", Amount.exactly(BODIES)).value
-        if kind not in (POINT, BODIES):
-            raise UserError(f"M is {kind:g}; expected 6 for bodies or 4 for point masses")
-        self.point = kind == POINT
+        self.point = known.pop("M", Amount.exactly(BODIES)).value == POINT
         if absent := [name for name in ("MA", "MB") if name not in known]:
             raise UserError(missing(absent))
         self._add_crush(known)
@@ -515,10 +512,8 @@ def _check_coefficients(known: Mapping[str, Amount]) -> None:
     for name, (low, high) in RANGES.items():
         amount = known.get(name, Amount.exactly(low))
         if (amount.high < low or amount.low > high) and amount.value != NO_MOMENT:
-            raise UserError(
-                f"{name} is {amount.value:g}; expected E from 0 to 1 and EM from -1 to 0, or 1 for "
-                "no moment"
-            )
+            end = ", or 1 for no moment" if name == "EM" else ""
+            raise UserError(f"{name} is {amount.value:g}; expected {low:g} to {high:g}{end}")
 
 
 def _is_zero(amount: Amount) -> bool:

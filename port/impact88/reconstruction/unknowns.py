@@ -18,6 +18,7 @@ from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import check_names, missing
 from .impacts import AFTER, BEFORE, COEFFICIENTS, IMPULSES, PIVOT, VEHICLES, Array, Impacts
+from .known import check_equations
 
 RANK_TOL = 1e-10  # relative size of singular values, and of sliding, that is 0
 DETERMINED_TOL = 1e-7  # change of a quantity along open directions that is rounding
@@ -94,7 +95,9 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     """
     check_names(known, (*VEHICLES, *UNKNOWNS, "MU", "M"), "quantity")
     values, _ = evaluate(known, tuple(known))  # as numbers of one shape
-    if np.all(values.pop("M", BODIES) == POINT):
+    equations = values.pop("M", BODIES)
+    check_equations(equations)
+    if np.all(equations == POINT):
         values |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "PM"), np.zeros(()))
         values |= dict.fromkeys(("IA", "IB"), np.ones(()))
         values = {"TA": np.zeros(()), "TB": np.zeros(()), **values}

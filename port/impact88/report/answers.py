@@ -96,7 +96,7 @@ class Answer:
     given : tuple of Row
         The entries, in the order of the file.
     found : mapping of str to Row
-        Results by name, the most asked first.
+        Results by name, the most asked first; empty where known values contradict one another.
     case : Case
         The case.
     evidence : str
@@ -373,6 +373,8 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
             bits = int(evaluate(impact.scene(), ("STATUS",))[0]["STATUS"])
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
     results = [name for name in names if name in values or name in impact.intervals]
+    if impact.verdict == "contradictory":  # numbers of the nearest impact settle nothing
+        results = []
     fractions = {
         result: {words.entry(impact, name): x for name, x in parts.items()}
         for result, parts in impact.drivers.items()
