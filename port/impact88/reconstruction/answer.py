@@ -510,7 +510,7 @@ def _tests(fit: Fit) -> dict[str, Test]:
             by_others = measurement + misfit / visible
             residual = misfit / (sd * math.sqrt(visible))
         tests[item.name] = Test(measurement, measurement + misfit, by_others, sd, residual)
-    return dict(sorted(tests.items(), key=lambda pair: -abs(pair[1].residual)))
+    return dict(sorted(tests.items(), key=lambda pair: -round(abs(pair[1].residual), 6)))
 
 
 def _at_odds(tests: Mapping[str, Test]) -> tuple[str, ...]:

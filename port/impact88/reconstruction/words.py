@@ -218,8 +218,8 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
     if result.draws:
         count = len(next(iter(result.draws.values())))
         lines.append(
-            f"intervals are those of {count:,} random draws; Monte Carlo standard error of their "
-            f"ends: at most {100 * result.sampling_error:.2g} % of the width"
+            f"intervals of {count:,} draws: Monte Carlo error of their ends (1 sd) at most "
+            f"{100 * result.sampling_error:.2g} % of the width"
         )
     for reason in dict.fromkeys(result.excluded.values()):
         names = [name for name in result.excluded if result.excluded[name] == reason]
