@@ -24,12 +24,12 @@ def answer_lines(answer: Answer) -> Iterator[str]:
     if answer.evidence:
         yield from paragraph(answer.evidence, "EVIDENCE", LABEL)
     for number, impact in enumerate(impacts, 1):
-        yield ""
-        if len(impacts) > 1:
-            yield f"IMPACT {number} OF {len(impacts)}"
         if impact.found:
-            yield from _result_lines(impact)
             yield ""
+            if len(impacts) > 1:
+                yield f"IMPACT {number} OF {len(impacts)}"
+            yield from _result_lines(impact)
+    yield ""
     sections = [(name.upper(), LABEL, texts) for name, texts in answer.sections.items()]
     for label, width, texts in (*sections, ("!", 2, answer.warnings), ("-", 2, answer.remarks)):
         for text in texts:
