@@ -127,7 +127,7 @@ def test_momentum_of_bodies_whose_dimensions_are_not_given():
     result = reconstruct(entries, samples=0)[0]
     assert result.values["UX"] == pytest.approx(-40.2083, abs=1e-3)
     assert "E" not in result.values
-    with pytest.raises(UserError, match="EM is 0.5; expected -1 to 0, or 1 for no moment"):
+    with pytest.raises(UserError, match=r"EM is 0\.5; expected -1 to 0, or 1 for no moment"):
         reconstruct({**SECTION_VII, "EM": 0.5})
     with pytest.raises(UserError, match="E cannot be used"):
         reconstruct({**entries, "E": 0.2})

@@ -595,7 +595,7 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         intervals=intervals,
         draws=columns,
         sampling_error=error,
-        assumed=_with_ends(result.assumed, columns),
+        assumed=_with_ends(result.assumed, intervals),
     )
 
 
@@ -608,13 +608,15 @@ def _interval(column: Array, value: float) -> tuple[float, float]:
     return min(low, value), max(high, value)
 
 
-def _with_ends(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[str, str]:
+def _with_ends(
+    assumed: Mapping[str, str], intervals: Mapping[str, tuple[float, float]]
+) -> dict[str, str]:
     """Return what was assumed, with the ends of ranges that intervals reach: these follow from the
     range, not from what is known."""
     words = dict(assumed)
-    for name in {*RANGES} & {*assumed} & {*columns}:
+    for name in {*RANGES} & {*assumed} & {*intervals}:
         low, high = RANGES[name]
-        pairs = zip((low, high), quantile(columns[name], INTERVAL).tolist(), strict=True)
+        pairs = zip((low, high), intervals[name], strict=True)
         ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED * (high - low)]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"
