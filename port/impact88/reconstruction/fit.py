@@ -58,10 +58,8 @@ class Fit:
         Changes (columns) of the coordinates that no known value resists.
     sensitivity : ndarray
         Changes of the coordinates by one standard deviation of each measured value.
-    rank : int
-        Number of directions that measured values determine, along the limits.
     leverage : ndarray
-        Leverage of each measured value on itself.
+        Leverage of each measured value on itself, along the limits.
     """
 
     search: Search
@@ -70,7 +68,6 @@ class Fit:
     misfit: float
     open_directions: Array
     sensitivity: Array
-    rank: int
     leverage: Array
 
     @property
@@ -82,7 +79,7 @@ class Fit:
     def redundancy(self) -> int:
         """Number of measured values more than needed; at least one where values had to move: a
         limit takes away a degree of freedom."""
-        return max(len(self.search.measured) - self.rank, int(self.squares > MOVED))
+        return max(round(float((1.0 - self.leverage).sum())), int(self.squares > MOVED))
 
     @property
     def probability(self) -> float:
@@ -306,22 +303,17 @@ class Search:
         soft, hard = self.residuals(point[None])
         by_soft, by_limits = (table[0] for table in self.slopes(point[None]))
         basis = null_space(by_limits[: len(self.hard)])
-        u, s, vt = np.linalg.svd(by_soft @ basis)
-        rank = rank_of(s)
-        open_directions = basis @ vt[rank:].T
-        sensitivity = (basis @ vt[:rank].T / s[:rank]) @ u[:, :rank].T
+        along = by_soft @ basis
         # a limit at which it lies checks known values, but makes none more certain
-        directions, sizes, _ = np.linalg.svd(by_soft @ null_space(by_limits))
-        limited_rank = rank_of(sizes)
+        limited = by_soft @ null_space(by_limits)
         return Fit(
             search=self,
             point=point * self.sizes,
             squares=float((soft[0] ** 2).sum()),
             misfit=float(np.abs(hard).max(initial=0.0)),
-            open_directions=open_directions * self.sizes[:, None],
-            sensitivity=sensitivity * self.sizes[:, None],
-            rank=limited_rank,
-            leverage=np.square(directions[:, :limited_rank]).sum(1),
+            open_directions=basis @ null_space(along) * self.sizes[:, None],
+            sensitivity=basis @ np.linalg.pinv(along, STEP) * self.sizes[:, None],
+            leverage=np.diag(limited @ np.linalg.pinv(limited, STEP)),
         )
 
     def run(self, seed: int = 0) -> tuple[list[Fit], int]:
