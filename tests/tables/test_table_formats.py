@@ -142,7 +142,7 @@ def test_layouts_of_csv(tmp_path: Path, ending: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "holds nothing"),
+        ("", "has no line of 1 to 10,000 headings"),
         ("3\n", "line 1: is '3\\n'; expected a JSON object of numbers and texts"),
         ('{"MA": 1}\n{"MA": \n', "line 2: is '{\"MA\": \\n'; expected a JSON object"),
         ('{"MA": 1}\n{"MB": 1}\n', "line 2: 'MB' is not in the first row"),

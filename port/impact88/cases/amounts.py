@@ -21,12 +21,12 @@ from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 from ..decimals import exact, is_number, negated, to_double, to_text
 from ..errors import UserError, quoted
 from ..names import INERTIA, LENGTH, MASS, PERCENT, PIVOT, quantity
-from .units import DIMENSIONS, GRAVITY, PLAIN, View, system_using, unit_of
+from .units import GRAVITY, PLAIN, Unit, View, is_measured, shown_unit, unit_of
 
 Kind = Literal["exact", "uniform", "triangular", "normal"]
 
@@ -81,12 +81,11 @@ class Amount:
     share: bool = False
 
     def __post_init__(self) -> None:
-        is_known = self.kind in ("exact", "uniform", "triangular", "normal")
         is_ordered = math.isnan(self.value) or self.low <= self.value <= self.high
-        if not (is_known and is_ordered and self.sd >= 0):
+        if not (self.kind in get_args(Kind) and is_ordered and self.sd >= 0):
             raise UserError(
-                f"{self} is none; expected low <= value <= high, sd of 0 or more, and of kinds "
-                "exact, uniform, triangular, normal"
+                "expected the lower limit first, no negative tolerance, and of kinds "
+                f"{', '.join(get_args(Kind))}"
             )
 
     @classmethod
@@ -155,70 +154,56 @@ class Amount:
         -------
         Amount
 
+        Raises
+        ------
+        OverflowError
+            Beyond the range of doubles.
+
         Examples
         --------
         >>> from fractions import Fraction
         >>> Amount.exactly(2.5, "2.50").mapped(Fraction(-1)).text
         '-2.50'
         """
-        if factor == 1 and not offset:
-            return self
-        value = exact(self.text) if self.text and self.value else self.value
-        points = (self.low, value, self.high) if self.varies else (value,) * 3
-        return _image(self.kind, points, self.sd, self.text, self.share, (factor, offset))
 
+        def image(x: float | Fraction) -> float:
+            if not math.isfinite(x):
+                return math.copysign(x, x * factor)
+            return float(offset + factor * Fraction(x))
 
-def _image(
-    kind: Kind,
-    points: Sequence[Fraction | float],
-    sd: Fraction | float,
-    text: str,
-    share: bool,
-    affine_map: tuple[Fraction, Fraction],
-) -> Amount:
-    """Return the amount with the images of lower limit, value and upper limit under a map; the
-    digits stay where no more than the sign changes. Raises OverflowError beyond the range of
-    doubles."""
-    factor, offset = affine_map
-
-    def image(x: Fraction | float) -> float:
-        if isinstance(x, float) and not math.isfinite(x):
-            return math.copysign(x, x * factor)
-        return float(offset + factor * Fraction(x))
-
-    value = image(points[1])
-    first, last = (value, value) if kind == "exact" else (image(points[0]), image(points[2]))
-    if offset or abs(factor) != 1:
-        text = ""
-    elif text and factor < 0 and value:
-        text = negated(text)
-    kind = kind if first != last else "exact"
-    spread = float(abs(factor) * Fraction(sd))
-    return Amount(value, min(first, last), max(first, last), kind, spread, text, share)
+        value = image(exact(self.text) if self.text and self.value else self.value)
+        ends = (image(self.low), image(self.high)) if self.varies else (value, value)
+        text = "" if offset or abs(factor) != 1 else self.text
+        if text and factor < 0 and value:
+            text = negated(text)
+        kind = self.kind if ends[0] != ends[1] else "exact"
+        sd = float(abs(factor) * Fraction(self.sd))
+        return Amount(value, min(ends), max(ends), kind, sd, text, self.share)
 
 
 # -- the notation
 
-_DIGITS = r"(?:\d{1,3}(?:,\d{3})+(?!\d)(?:\.\d*)?|\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_DIGITS = r"(?:[1-9]\d{0,2}(?:,\d{3})+(?!\d)(?:\.\d*)?|\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = re.compile(rf"([-+]? ?{_DIGITS}) ?([a-zA-Z°%].*)?")
 _FEET = re.compile(rf"([-+]?) ?({_DIGITS}) ?(?:ft|foot|feet) ?({_DIGITS}) ?(?:in|inch|inches)")
 _SKID = re.compile(r"skid (.+) at ((?:[-+.\d]|normal |uniform |triangular ).*)")
-_SPELLINGS = str.maketrans({"−": "-", "–": "-", "⋅": "·", "×": "*", "º": "°", "±": TOLERANCE})
-_DECIMAL_COMMA = re.compile(r"[-+]?\d{1,3},\d{3}")
-_COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
-"""Kinds that are named, with how many numbers follow."""
+_SPELLINGS = str.maketrans({"−": "-", "–": "-", "º": "°", "±": TOLERANCE})
+_DECIMAL_COMMA = re.compile(r"[-+]? ?\d{1,3},\d{3}")
+_COUNTS = {"uniform": 2, "triangular": 3, "normal": 2, "around": 2}
+"""Kinds of several numbers; the first word of a text may be one."""
+_MARKS = {"around": re.compile(r"\+-"), "uniform": re.compile(r"(?<!\.)\.\.(?!\.)")}
+"""Marks between the numbers of kinds."""
 
 
 class Number(NamedTuple):
-    """A number as written: its exact value, the symbol of its unit ("" without), and its digits
-    ("" of feet and inches)."""
+    """A number as written: its exact value, its unit, and its digits ("" of feet and inches)."""
 
     value: Fraction
-    unit: str
+    unit: Unit | None
     digits: str
 
 
-def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
+def read(name: str, text: str, view: View = PLAIN) -> Amount:
     """Return the amount that a text gives a quantity, in base units along the listing's axes.
 
     Parameters
@@ -229,8 +214,6 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
         As in a file, in the notation at the head of this module.
     view : View, optional
         Units, axes and headings of the file.
-    unit : str, optional
-        The unit of a bare number, by default that of the view.
 
     Raises
     ------
@@ -245,29 +228,27 @@ def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
     >>> read("TB", "271 +- 1 %", View(headings="compass")).low
     -183.71
     """
-    words = normalize(text)
+    words, rule = normalize(text), quantity(name).unit
     entry = f"{name} = {quoted(words)}"
     try:
         if len(words) > MAX_LENGTH:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
         if words.startswith("skid"):
             return _skid(name, words, view)
-        if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
+        if words.lower() == "inf" and rule in (MASS, INERTIA):
             return Amount.exactly(math.inf)  # a barrier
-        if is_number(words) and not re.search(r"\d \d", words):  # as INPUT takes it: "." is 0
-            amount = _plain(name, words.replace(" ", ""), view, unit)
-        else:
-            amount = _amount(name, *parse(quantity(name).unit, words), view, unit)
+        amount = _amount(name, *parse(rule, words), view)
+        if name in SKIDDING and amount.limits(0.0)[0] < 0:
+            course = f"H{name[1:]}"
+            raise UserError(
+                f"a speed is not negative; expected 0 or more, or {course} turned by 180"
+            )
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except OverflowError:
         raise UserError(f"{entry} is beyond the range of doubles") from None
     except ValueError:
         raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
-    if name in SKIDDING and amount.limits(0.0)[0] < 0:
-        highest = f"{view.shown(name, amount.high):g} {view.unit(name)}".rstrip()
-        expected = f"0 .. {highest}" if amount.value >= 0 else f"H{name[1:]} turned by 180"
-        raise UserError(f"{entry}: a speed is not negative; expected {expected}")
     return amount
 
 
@@ -276,15 +257,13 @@ def normalize(text: str) -> str:
     return " ".join(text[: MAX_LENGTH + 1].translate(_SPELLINGS).replace("+/-", TOLERANCE).split())
 
 
-def units_in(name: str, text: str) -> list[tuple[str, str]]:
-    """Return rule and symbol of the units in an amount, none if it is a bare number or no
-    amount."""
+def units_in(name: str, text: str) -> list[Unit]:
+    """Return the units in an amount, none if it is a bare number or no amount."""
     words = normalize(text)
     if match := _SKID.fullmatch(words):
         return units_in("DA", match[1])
-    rule = quantity(name).unit
     with suppress(ValueError, OverflowError):  # `read` refuses it
-        return [(rule, number.unit) for number in parse(rule, words)[1] if number.unit]
+        return [number.unit for number in parse(quantity(name).unit, words)[1] if number.unit]
     return []
 
 
@@ -296,60 +275,43 @@ def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
     Raises ValueError for a text that is no amount, UserError for one refused for another reason,
     OverflowError for numbers beyond the range of doubles."""
     kind, _, remainder = words.partition(" ")
-    if kind in _COUNTS:
-        numbers = tuple(_number(rule, part) for part in re.split(r" (?=[-+]?\.?\d)", remainder))
-        if len(numbers) != _COUNTS[kind]:
-            raise ValueError(words)
-        return kind, numbers
-    first, mark, second = words.partition(TOLERANCE)
-    if mark and second.endswith("%"):
-        if rule == PERCENT or "%" in first:
+    parts = re.split(r" (?=[-+]?\.?\d)", remainder)
+    if kind not in _COUNTS:
+        kind = next((kind for kind, mark in _MARKS.items() if mark.search(words)), "exact")
+        parts = _MARKS[kind].split(words) if kind in _MARKS else [words]
+    if len(parts) != _COUNTS.get(kind, 1):
+        raise ValueError(words)
+    if kind == "around" and parts[1].endswith("%"):
+        if rule == PERCENT or "%" in parts[0]:
             raise UserError("a percentage of a percentage; expected such as '37 +- 2'")
-        middle, share = _number(rule, first), _number(PERCENT, second).value / 100
-        return "around", (middle, middle._replace(value=abs(middle.value) * share))
-    if mark:
-        return "around", (_number(rule, first), _number(rule, second))
-    first, mark, second = words.partition("..")
-    if mark and "..." not in words:
-        return "uniform", (_number(rule, first), _number(rule, second))
-    return "exact", (_number(rule, words),)
+        middle, share = _number(rule, parts[0]), _number(PERCENT, parts[1]).value / 100
+        return kind, (middle, middle._replace(value=abs(middle.value) * share))
+    return kind, tuple(_number(rule, part) for part in parts)
 
 
 def _number(rule: str, text: str) -> Number:
-    """Return the one number of a text. Raises ValueError."""
+    """Return the one number of a text. Raises ValueError, and OverflowError beyond the range of
+    doubles."""
     words = text.strip()
     if rule == LENGTH and (match := _FEET.fullmatch(words)):
-        inches = 12 * _fraction(match[2]) + _fraction(match[3])
-        return Number(-inches if match[1] == "-" else inches, "in", "")
-    match = _NUMBER.fullmatch(words)
-    if match is None:
-        raise ValueError(words)
-    digits, symbol = match.groups(default="")
-    return Number(_fraction(digits), symbol and unit_of(rule, symbol).symbol, digits)
-
-
-def _fraction(digits: str) -> Fraction:
-    """Return a number as written, exactly; 0 where it is 0 as a double. Raises OverflowError beyond
-    the range of doubles."""
-    plain = digits.replace(",", "")
+        feet, inches = (_number(rule, digits).value for digits in match.groups()[1:])
+        size = 12 * feet + inches
+        return Number(-size if match[1] == "-" else size, unit_of(rule, "in"), "")
+    digits, symbol = words, ""
+    if " " in words or not is_number(words):  # "." is 0, as INPUT takes it
+        match = _NUMBER.fullmatch(words)
+        if match is None:
+            raise ValueError(words)
+        digits, symbol = match.groups(default="")
+    plain = re.sub("[, ]", "", digits)
     value = to_double(plain)
     if math.isinf(value):
         raise OverflowError
-    return exact(plain) if value else Fraction(0)
+    unit = unit_of(rule, symbol) if symbol else None
+    return Number(exact(plain) if value else Fraction(0), unit, digits)
 
 
-def _plain(name: str, digits: str, view: View, unit: str) -> Amount:
-    """Return the amount of a number without unit and tolerance. Raises OverflowError beyond the
-    range of doubles."""
-    value = to_double(digits)
-    if math.isinf(value):
-        raise OverflowError
-    if name == "MUP" and value == PIVOT:  # the pivot's mark has no direction
-        return Amount.exactly(value, digits)
-    return Amount.exactly(value, digits).mapped(*view.map(name, unit))
-
-
-def _amount(name: str, kind: str, numbers: Sequence[Number], view: View, unit: str) -> Amount:
+def _amount(name: str, kind: str, numbers: Sequence[Number], view: View) -> Amount:
     """Return an amount in base units. Raises UserError, and OverflowError beyond the range of
     doubles."""
     rule = quantity(name).unit
@@ -357,41 +319,40 @@ def _amount(name: str, kind: str, numbers: Sequence[Number], view: View, unit: s
     is_mixed = len({*units}) > 1 or not all(number.digits for number in numbers)
     if is_mixed and len(units) < len(numbers):
         raise UserError("expected a unit beside each number")
-    if units and name in ("MUP", "RR0"):
+    if units and name == "MUP":
         raise UserError("expected a number without %; MU takes shares of the critical")
-    if units and not view.units and rule in DIMENSIONS:
+    if units and not view.units and is_measured(rule):
         raise UserError("has a unit; expected units, too, such as us")
-    common = units[0] if units else unit
+    common = units[0] if units else shown_unit(rule, view.units)
     for number in numbers:
-        _check_comma(rule, number.digits, number.unit or common or view.unit(name))
-    values = [
-        n.value * unit_of(rule, n.unit).size / unit_of(rule, common).size if is_mixed else n.value
-        for n in numbers
+        _check_comma(number.digits, number.unit or common)
+    values: list[Any] = [  # exact fractions, until they are mapped
+        n.value * n.unit.size / common.size if n.unit and common else n.value for n in numbers
     ]
-    first, middle, last = values[0], values[len(values) // 2], values[-1]
+    first, last = values[0], values[-1]
     reach = math.inf if last else 0
-    shapes: dict[str, tuple[Kind, Sequence[Fraction | float]]] = {
-        "exact": ("exact", (first, first, first)),
-        "around": ("uniform", (first - last, first, first + last)),
-        "uniform": ("uniform", (first, (first + last) / 2, last)),
-        "triangular": ("triangular", (first, middle, last)),
-        "normal": ("normal", (first - reach, first, first + reach)),
-    }
-    distribution, points = shapes[kind]
-    sd = last if kind == "normal" else Fraction(0)
-    if [*points] != sorted(points) or sd < 0:
-        raise UserError("expected the lower limit first, and no negative tolerance")
+    low, value, high = {
+        "exact": (first, first, first),
+        "around": (first - last, first, first + last),
+        "uniform": (first, (first + last) / 2, last),
+        "triangular": (first, values[len(values) // 2], last),
+        "normal": (first - reach, first, first + reach),
+    }[kind]
     text = numbers[1 if kind == "triangular" else 0].digits if kind != "uniform" else ""
-    factor, offset = view.map(name, common)
     text = re.sub("[, ]", "", text)
-    return _image(distribution, points, sd, text, name == "MU" and "%" in units, (factor, offset))
+    share = name == "MU" and bool(units)
+    distribution: Any = "uniform" if kind == "around" else kind
+    sd: Any = last if kind == "normal" else Fraction(0)
+    amount = Amount(value, low, high, distribution, sd, text, share)
+    if name == "MUP" and value == PIVOT:  # the pivot's mark has no direction
+        return amount.mapped(Fraction(1))
+    return amount.mapped(*view.map(name, common.symbol if common else ""))
 
 
-def _check_comma(rule: str, digits: str, unit: str) -> None:
+def _check_comma(digits: str, unit: Unit | None) -> None:
     """Raise UserError for a comma that may be a decimal one: 1,234 is a thousand only with an
     American unit."""
-    is_american = bool(unit) and unit_of(rule, unit).side == "us"
-    if _DECIMAL_COMMA.fullmatch(digits) and (digits.lstrip("+-")[0] == "0" or not is_american):
+    if _DECIMAL_COMMA.fullmatch(digits) and (unit is None or unit.side != "us"):
         choices = f"{digits.replace(',', '')} or {digits.replace(',', '.')}"
         raise UserError(f"the comma of {digits} may be a decimal one; expected {choices}")
 
@@ -399,21 +360,20 @@ def _check_comma(rule: str, digits: str, unit: str) -> None:
 def _skid(name: str, words: str, view: View) -> Amount:
     """Return the speed at the start of a skid to rest, v = sqrt(2 mu g d).
 
-    Distance and friction are independent. One that varies gives the speed its distribution; two
-    give a normal within the limits of both, its standard deviation to first order."""
+    One distribution is kept between the limits of the speed; of two, the speed is taken as normal.
+    Raises UserError."""
     match = _SKID.fullmatch(words)
     if name not in SKIDDING:
-        raise UserError(f"a skid is a speed; expected {', '.join(SKIDDING)}")
-    system = view.units or system_using(units_in(name, words))
-    if match is None or not system:
+        raise UserError(f"a skid gives a speed; expected {', '.join(SKIDDING)}")
+    if match is None or not view.units:
         raise UserError("expected distance, unit and friction, such as skid 60 ft at 0.7")
-    parts = [read("DA", match[1], View(system)), read("E", match[2])]
-    low, high = zip(*(part.limits() for part in parts), strict=True)
-    if min(low) <= 0:
+    parts = read("DA", match[1], view), read("E", match[2])
+    distances, frictions = ((*part.limits(), part.value) for part in parts)
+    if min(*distances, *frictions) <= 0:
         raise UserError("expected a distance and a friction above 0")
-    gravity = float(GRAVITY / View(system).base_size(LENGTH))
-    slow, value, fast = (
-        math.sqrt(2 * gravity * d * mu) for d, mu in (low, [part.value for part in parts], high)
+    gravity = float(GRAVITY / view.base_size(LENGTH))
+    slow, fast, value = (
+        math.sqrt(2 * gravity * d * mu) for d, mu in zip(distances, frictions, strict=True)
     )
     kinds = [part.kind for part in parts if part.varies] or ["exact"]
     kind = kinds[0] if len(kinds) == 1 else "normal"

@@ -14,14 +14,14 @@ from typing import Any
 
 from ..decimals import to_double, to_text
 from ..errors import UserError, quoted
-from ..files import decode, display_name, read_bytes
+from ..files import display_name, read_text
 from ..names import DEFAULT_M, PIVOT, SCENE, did_you_mean, quantity
 from .amounts import TOLERANCE, Amount, normalize, read, units_in
 from .estimates import ESTIMATE, SIZES, estimate
 from .motion import contact_point, courses, headings, plane_across
 from .plausibility import implausible
-from .scenefile import ABOUT, INPUTS, MAX_BYTES, SOURCE, read_toml, write_toml
-from .units import DIMENSIONS, PLAIN, View, system_using
+from .scenefile import ABOUT, INPUTS, SOURCE, read_toml, write_toml
+from .units import PLAIN, View, is_measured, system_using
 
 COURSE = "course"
 LOCKED = "locked"
@@ -52,11 +52,9 @@ class Case:
     title, case, examiner, date : str
         Headings of a report.
     written : mapping of str to str
-        The entries as written.
+        The entries as written; NAME_source says where a value comes from.
     source : str
         Name of the case in messages.
-    sources : mapping of str to str
-        Notes on where values come from.
     sizes : mapping of str to Amount
         LA BA LB BB, in base units.
     derived : tuple of str
@@ -66,8 +64,6 @@ class Case:
         Names of ``texts`` that are typed though the scene of point masses does not give them.
     places : mapping of str to str
         Places of entries for messages.
-    defaults : View
-        The view of entries that name none.
 
     Examples
     --------
@@ -88,12 +84,10 @@ class Case:
     date: str = ""
     written: Mapping[str, str] = field(default_factory=dict)
     source: str = "scene"
-    sources: Mapping[str, str] = field(default_factory=dict)
     sizes: Mapping[str, Amount] = field(default_factory=dict)
     derived: tuple[str, ...] = ()
     omitted: tuple[str, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
-    defaults: View = field(default=PLAIN, repr=False)
 
     def __post_init__(self) -> None:
         for name, value in vars(self).copy().items():
@@ -116,8 +110,7 @@ class Case:
         UserError
             For a file that cannot be read as a case; the message names file, line and entry.
         """
-        source = display_name(path)
-        return cls.loads(decode(read_bytes(path, MAX_BYTES), source), source, **view)
+        return cls.loads(read_text(path), display_name(path), **view)
 
     @classmethod
     def loads(cls, text: str, source: str = "scene", **view: str | None) -> Case:
@@ -137,8 +130,7 @@ class Case:
         UserError
             See `load`.
         """
-        texts, lines = read_toml(text, source)
-        places = {name: f"{source}, line {number}" for name, number in lines.items()}
+        texts, places = read_toml(text, source)
         return cls.of(texts, source, View.of(**view), places)
 
     @classmethod
@@ -171,52 +163,45 @@ class Case:
             For an unknown name, a text that is not an amount, units of two systems, a bare number
             among units, and entries that contradict one another.
         """
-        entered = {n: text for n, value in entries.items() if (text := entry_text(n, value))}
+        entered = {**view.words(), **entries}
+        written = {n: text for n, value in entered.items() if (text := entry_text(n, value))}
         places = places or {}
-        quantities = {n: t for n, t in entered.items() if n not in ABOUT and not n.endswith(SOURCE)}
-        sources = {n.removesuffix(SOURCE): t for n, t in entered.items() if n.endswith(SOURCE)}
-        for name in (*quantities, *sources):
-            if name not in INPUTS:
+        for name in written:
+            if name.removesuffix(SOURCE) not in INPUTS and name not in ABOUT:
                 hint = did_you_mean(name, (*INPUTS, *ABOUT))
                 fault = f"{quoted(name)} is not an entry of a scene{hint}"
                 raise UserError(fault, places.get(name, source))
-        words = {n: t for n, t in entered.items() if n in ("units", "axes", "headings")}
-        file_view = View.of(source, **(view.words() | words))
+        given = {n: text for n, text in written.items() if n in INPUTS}
+        view = View.of(source, **{n: written.get(n) for n in ("units", "axes", "headings")})
         try:
-            if not file_view.units:
-                units = system_using(
-                    [u for n, text in quantities.items() for u in units_in(n, text)]
-                )
-                file_view, is_inferred = replace(file_view, units=units), bool(units)
-            amounts, remarks = _read_entries(quantities, file_view, is_inferred, places)
+            if not view.units:
+                units = system_using(u for n, text in given.items() for u in units_in(n, text))
+                view, is_inferred = replace(view, units=units), bool(units)
+            amounts, estimates = _read_entries(given, view, is_inferred, places)
             sizes = {n: amounts.pop(n) for pair in SIZES.values() for n in pair if n in amounts}
             amounts, across = plane_across(amounts)
-            texts, share = _nominal_digits(amounts)
+            texts, shares = _nominal_digits(amounts)
         except UserError as error:
             raise error if error.where else UserError(str(error), source) from None
-        dependent = {n for n, t in quantities.items() if t == COURSE or _is_estimate(n, t)}
-        dependent |= {n for n, amount in amounts.items() if amount.share}
-        dependent |= {"GA", "MU"} if across else set()
+        derived = {n for n, a in amounts.items() if a.share or a.text == COURSE}
+        derived |= {n for n, text in given.items() if _is_estimate(n, text)}
+        derived |= {"GA", "MU"} if across else set()
         absent = [name for name in SCENE if name not in texts]
         is_complete = amounts["M"].value == 4 and {*absent} <= {*POINT_DEFAULTS}
-        defaults = absent if is_complete else []
-        texts |= {name: POINT_DEFAULTS[name] for name in defaults}
-        remarks += [*across, *share, *_implausible(amounts, sizes, quantities, file_view)]
-        about = {name: entered.get(name, "") for name in ("title", "case", "examiner", "date")}
+        omitted = tuple(absent) if is_complete else ()
+        texts |= {name: POINT_DEFAULTS[name] for name in omitted}
         return cls(
             amounts,
-            file_view,
+            view,
             {name: texts[name] for name in SCENE if name in texts},
-            tuple(remarks),
-            written=entered,
+            (*estimates, *across, *shares, *_implausible(amounts, given, view)),
+            written=written,
             source=source,
-            sources=sources,
             sizes=sizes,
-            derived=tuple(dependent),
-            omitted=tuple(defaults),
+            derived=tuple(derived),
+            omitted=omitted,
             places=places,
-            defaults=view,
-            **about,
+            **{name: written.get(name, "") for name in ("title", "case", "examiner", "date")},
         )
 
     def with_(
@@ -247,7 +232,7 @@ class Case:
             is_around = isinstance(value, str) and normalize(value).startswith(TOLERANCE)
             texts[name] = f"{self._middle(name)} {value}" if is_around else value
         places = {**self.places, **dict.fromkeys(changes, where)} if where else self.places
-        return Case.of(texts, self.source, self.defaults, places)
+        return Case.of(texts, self.source, places=places)
 
     def _middle(self, name: str) -> str:
         """Return the present value of an entry as text, to put a tolerance around."""
@@ -261,7 +246,7 @@ class Case:
     @property
     def numbers(self) -> dict[str, float]:
         """The scene's nominal values in base units, for `mechanics.solve`."""
-        return {n: _double(text) for n, text in self.texts.items() if n not in self.omitted}
+        return _doubles({n: text for n, text in self.texts.items() if n not in self.omitted})
 
     @property
     def ranges(self) -> tuple[str, ...]:
@@ -326,10 +311,10 @@ def _read_entries(
             if _is_estimate(name, text):
                 digits, remark = estimate(name, amounts, view)
                 remarks.append(remark)
-                text = digits + normalize(text).removeprefix(ESTIMATE)
+                text = f"{digits} {view.unit(name)}" + normalize(text).removeprefix(ESTIMATE)
             amounts[name] = _read_entry(name, text, view)
-            is_measured = quantity(name).unit in DIMENSIONS and amounts[name].value
-            if is_inferred and is_measured and not units_in(name, given[name]):
+            is_bare = is_inferred and is_measured(quantity(name).unit) and not units_in(name, text)
+            if is_bare and amounts[name].value:
                 raise UserError(
                     f"{name} = {text} has no unit, and other values have; add one, or "
                     f'units = "{view.units}" (--units) for numbers without'
@@ -359,31 +344,25 @@ def _nominal_digits(entries: Mapping[str, Amount]) -> tuple[dict[str, str], list
         return texts, []
     from ..mechanics.solve import evaluate  # numpy; for a share only
 
-    scene = {name: _double(text) for name, text in texts.items() if name in SCENE}
-    values, _ = evaluate(scene, ["MUC", "gt"])
-    share, critical = amounts["MU"].value, float(values.get("MUC", math.nan))
+    values, _ = evaluate(_doubles(texts), ["MUC", "gt"])
+    critical = float(values.get("MUC", math.nan))
     if not math.isfinite(critical):
         return texts, []
-    friction = share * critical * (-1 if values.get("gt", 0) > 0 else 1)  # line 400 turns it again
-    remark = (
-        f"MU = {friction:.6g} is {100 * share:g} % of the critical friction {abs(critical):.6g}"
-    )
-    return {**texts, "MU": to_text(friction)}, [remark]
+    share = amounts["MU"].value * (-1 if values["gt"] > 0 else 1)  # line 400 turns it again
+    texts["MU"] = to_text(share * critical)
+    percent = f"{100 * abs(share):g} % of the critical friction {abs(critical):.6g}"
+    return texts, [f"MU = {share * critical:.6g} is {percent}"]
 
 
-def _implausible(
-    entries: Mapping[str, Amount], sizes: Mapping[str, Amount], given: Mapping[str, str], view: View
-) -> list[str]:
+def _implausible(entries: Mapping[str, Amount], given: Mapping[str, str], view: View) -> list[str]:
     """Return remarks on implausible values."""
     values = {n: amount.value for n, amount in entries.items() if not math.isnan(amount.value)}
-    pairs = {v: [sizes[n].value for n in pair if n in sizes] for v, pair in SIZES.items()}
-    return [
-        f"{name} = {given[name]}: {words}" if name in given else words
-        for name, is_off, words in implausible(values, view, courses(entries), pairs)
-        if is_off
-    ]
+    remarks = implausible(values, view, courses(entries))
+    return [f"{name} = {given[name]}: {words}" for name, is_off, words in remarks if is_off]
 
 
-def _double(text: str) -> float:
-    """Return the double of a text to type; infinite for the mass of a barrier, which cannot be."""
-    return math.inf if text == "INF" else to_double(text)
+def _doubles(texts: Mapping[str, str]) -> dict[str, float]:
+    """Return the scene's values as doubles; the mass of a barrier, which cannot be typed, is
+    infinite."""
+    numbers = {name: text for name, text in texts.items() if name in SCENE}
+    return {n: math.inf if x == "INF" else to_double(x) for n, x in numbers.items()}

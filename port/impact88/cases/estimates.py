@@ -12,8 +12,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
 
 from ..decimals import to_text
 from ..errors import UserError
@@ -28,25 +27,6 @@ MIN_WEIGHT = 1500  # lb; cars of the fitted sample lie between these two
 MAX_WEIGHT = 6000  # lb
 SLOPE = 1.03  # ft-s² for each lb, as published
 OFFSET = 1206.0  # lb-ft-s², as published
-
-
-def weight(mass: Any, view: View) -> Any:
-    """Return the weight in lb of a mass in base units."""
-    return mass * float(view.base_size(MASS) / POUND)
-
-
-def is_car(pounds: Any) -> Any:
-    """Return True for the weight of a passenger car."""
-    return (pounds >= MIN_WEIGHT - 1e-6) & (pounds <= MAX_WEIGHT + 1e-6)  # 1,500 lb from kg
-
-
-def usual_inertia(mass: Any, sizes: Sequence[float], view: View) -> Any:
-    """Return the yaw inertia by the length and width of a vehicle, else by its weight, in base
-    units; masses may be an array."""
-    if sizes:
-        return mass * (sizes[0] ** 2 + sizes[1] ** 2) / 12
-    unit = float(unit_of(INERTIA, "lb-ft-s2").size / view.base_size(INERTIA))
-    return (SLOPE * weight(mass, view) - OFFSET) * unit
 
 
 def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str, str]:
@@ -68,24 +48,23 @@ def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str,
         Without a mass; without length and width, for the weight of no passenger car, and without
         units.
     """
-    vehicle = name[1]
-    mass = amounts.get(f"M{vehicle}")
+    mass, pair = amounts.get(f"M{name[1]}"), SIZES[name[1]]
     if mass is None or not mass.value > 0:
-        raise UserError(f"{name} = {ESTIMATE} needs M{vehicle} above 0")
-    pair, pounds = SIZES[vehicle], weight(mass.value, view)
+        raise UserError(f"{name} = {ESTIMATE} needs M{name[1]} above 0")
     sizes = [amounts[size].value for size in pair if size in amounts]
-    if len(sizes) == 1 or not (sizes or (view.units and is_car(pounds))):
+    pounds = round(mass.value * float(view.base_size(MASS) / POUND), 6)  # 1,500 lb from kg
+    if len(sizes) == 2:
+        value = mass.value * (sizes[0] ** 2 + sizes[1] ** 2) / 12
+        rule = "mass (length² + width²)/12, a uniform rectangle; 6 to 14 % high on seven cars"
+    elif view.units and not sizes and MIN_WEIGHT <= pounds <= MAX_WEIGHT:
+        unit = float(unit_of(INERTIA, "lb-ft-s2").size / view.base_size(INERTIA))
+        value = (SLOPE * pounds - OFFSET) * unit
+        rule = f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2; 6 to 29 % high on seven"
+    else:
         raise UserError(
             f"{name} = {ESTIMATE} from the weight is for passenger cars of {MIN_WEIGHT:,} to "
             f'{MAX_WEIGHT:,} lb, with units = "us" or another; expected {name}, or '
             f"{' and '.join(pair)}"
         )
-    rule = (
-        f"M{vehicle} (L{vehicle}² + B{vehicle}²)/12, a uniform rectangle; "
-        "6 to 14 % high on seven passenger cars"
-        if sizes
-        else f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
-        "6 to 29 % high on seven of them"
-    )
-    value = float(f"{usual_inertia(mass.value, sizes, view):.4g}")
-    return to_text(value), f"{name} = {value:g} {view.unit(name)} is estimated: {rule}"
+    digits = to_text(float(f"{value:.4g}"))
+    return digits, f"{name} = {digits} {view.unit(name)} is estimated: {rule}"

@@ -3,9 +3,9 @@ own axes."""
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from ..decimals import to_text
 from ..errors import UserError
@@ -24,8 +24,15 @@ OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
 PARALLEL = 1e-9  # largest sine between directions along one line; rounding leaves 1e-16
 _ACROSS = ("PDOFA", "PDOFB", "DVAR", "DVBR", "PT")
 """Directions of the impulse: where one is known, the line is not taken for granted."""
-_ENOUGH = ("SA SB", "SAF SBF", "SA SAF SB", "SA SAF SBF", "SB SBF SA", "SB SBF SAF")
-"""Velocities that give the directions of all four by the momentum."""
+_ENOUGH = ({"SA", "SB"}, {"SAF", "SBF"})
+"""Velocities along one line, either of which leave the momentum no other direction."""
+
+
+class Velocity(NamedTuple):
+    """A velocity: its size and its course in degrees from the x axis."""
+
+    size: float
+    course: float
 
 
 def exact_number(value: float) -> Amount:
@@ -45,33 +52,26 @@ def contact_point(entries: Mapping[str, Amount]) -> dict[str, Amount]:
         If one of two coordinates is missing, or both pairs are given.
     """
     result = dict(entries)
-    for vehicle, names in OWN_AXES.items():
-        present = [name for name in names if name in entries]
-        polar = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in entries]
-        if present and (polar or len(present) == 1):
+    for vehicle, pair in OWN_AXES.items():
+        own = [entries[name] for name in pair if name in entries]
+        polar = f"D{vehicle}", f"P{vehicle}"
+        if own and (len(own) == 1 or not entries.keys().isdisjoint(polar)):
             raise UserError(
-                f"{present[0]} is given; expected {names[0]} and {names[1]}, or D{vehicle} and "
-                f"P{vehicle} in their place"
+                f"expected {' and '.join(pair)}, or {' and '.join(polar)} in their place"
             )
-        if present and not any(entries[name].varies for name in names):
-            forward, side = (result.pop(name).value for name in names)
-            result[f"D{vehicle}"] = exact_number(math.hypot(forward, side))
-            result[f"P{vehicle}"] = exact_number(math.degrees(math.atan2(side, forward)))
+        if own and not any(amount.varies for amount in own):
+            forward, left = (result.pop(name).value for name in pair)
+            angle = math.degrees(math.atan2(left, forward))
+            result[polar[0]] = exact_number(math.hypot(forward, left))
+            result[polar[1]] = exact_number(angle)
     return result
 
 
 def courses(entries: Mapping[str, Amount]) -> dict[str, float]:
     """Return the vehicles' courses before the impact in degrees from the x axis, by "A" and "B",
     where they are known exactly and the vehicle moves."""
-    result = {}
-    for speed in ("SA", "SB"):
-        motion, (x, _, course) = velocity(entries, speed), VECTORS[speed]
-        if motion:
-            is_typed = course in entries and x not in entries
-            result[speed[1]] = (
-                entries[course].value if is_typed else math.degrees(cmath.phase(motion))
-            )
-    return result
+    motions = {vehicle: velocity(entries, f"S{vehicle}") for vehicle in "AB"}
+    return {vehicle: v.course for vehicle, v in motions.items() if v and v.size}
 
 
 def headings(entries: Mapping[str, Amount]) -> dict[str, Amount]:
@@ -86,9 +86,8 @@ def headings(entries: Mapping[str, Amount]) -> dict[str, Amount]:
 def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
     """Return the GA of a contact plane across the line along which both vehicles move.
 
-    They do if the exactly known directions before (or after) the impact, or those of one vehicle
-    before and after and one of the other, are parallel, and no other direction is known. A vehicle
-    at rest has no direction.
+    They do if the directions of both before the impact, or after it, are known exactly, all that
+    are known are parallel, and none is known within limits. A vehicle at rest has no direction.
 
     Returns
     -------
@@ -96,21 +95,22 @@ def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
         Degrees, from -180 to 180; A approaches against the normal. None for another motion.
     """
     vectors = {speed: velocity(entries, speed) for speed in VECTORS}
-    velocities = {speed: vector for speed, vector in vectors.items() if vector is not None}
-    uncertain = [n for s in VECTORS if s not in velocities for n in VECTORS[s] if n in entries]
-    moving = [vector for vector in velocities.values() if vector]
-    is_known = any({*speeds.split()} <= {*velocities} for speeds in _ENOUGH)
-    if not (is_known and moving) or any(n in entries for n in (*uncertain, *_ACROSS)):
+    velocities = {speed: vector for speed, vector in vectors.items() if vector}
+    moving = [speed for speed, vector in velocities.items() if vector.size]
+    others = [name for s in VECTORS if s not in velocities for name in VECTORS[s]]
+    is_known = any(pair <= velocities.keys() for pair in _ENOUGH)
+    if not (is_known and moving and entries.keys().isdisjoint((*others, *_ACROSS))):
         return None
-    if any(abs((moving[0].conjugate() * v).imag) > PARALLEL * abs(v * moving[0]) for v in moving):
+    line = velocities[moving[0]].course
+    angles = {speed: math.radians(velocities[speed].course - line) for speed in velocities}
+    if any(abs(math.sin(angles[speed])) > PARALLEL for speed in moving):
         return None
-    # A is taken to be the faster one where not both speeds before are velocities
+    along = {speed: v.size * math.cos(angles[speed]) for speed, v in velocities.items()}
     has_speeds = all(name in entries or VECTORS[name][0] in entries for name in ("SA", "SB"))
-    approach = velocities.get("SA", 0j) - velocities.get("SB", 0j) if has_speeds else 0j
-    if not approach:
-        speed = next(name for name, vector in velocities.items() if vector)
-        approach = velocities[speed] if speed[1] == "A" else -velocities[speed]
-    return math.degrees(math.atan2(-approach.imag + 0.0, -approach.real + 0.0))
+    approach = along.get("SA", 0.0) - along.get("SB", 0.0) if has_speeds else 0.0
+    # where not both speeds before are known, A is taken to be the faster one
+    is_forward = approach > 0 if approach else moving[0][1] == "A"
+    return math.remainder(line + 180 * is_forward, 360) + 0.0
 
 
 def plane_across(entries: Mapping[str, Amount]) -> tuple[dict[str, Amount], list[str]]:
@@ -119,36 +119,36 @@ def plane_across(entries: Mapping[str, Amount]) -> tuple[dict[str, Amount], list
     line = line_of_motion(entries) if entries["M"].value == 4 and "GA" not in entries else None
     if line is None:
         return dict(entries), []
-    remarks = [
+    friction = [name for name in ("MU", "MUP") if name in entries]
+    is_locked = any(entries[name].value == PIVOT for name in friction)
+    unused = "" if is_locked else "".join(f"; {name} is not used" for name in friction)
+    remark = (
         "the motion is along one line: the contact plane is across it, and nothing acts along the "
-        "plane (MU = 0)"
-    ]
-    result = {**entries, "GA": exact_number(line)}
+        f"plane (MU = 0{unused})"
+    )
     is_implied = any(
-        None not in (velocity(entries, before), velocity(entries, after))
+        velocity(entries, before) and velocity(entries, after)
         for before, after in (("SA", "SAF"), ("SB", "SBF"))
     )
-    friction = [name for name in ("MU", "MUP") if name in entries]
-    if friction and entries[friction[0]].value == PIVOT:
-        return result, remarks
-    for name in friction:
-        del result[name]
-        remarks.append(f"{name} is not used: nothing slides along the plane")
+    result = {**entries, "GA": exact_number(line)}
+    if is_locked:
+        return result, [remark]
+    result.pop("MUP", None)
     if friction or not is_implied:
         result["MU"] = exact_number(0.0)
-    return result, remarks
+    return result, [remark]
 
 
-def velocity(entries: Mapping[str, Amount], speed: str) -> complex | None:
-    """Return a velocity x + iy, 0 at rest, None if its direction is not known exactly; its size is
-    1 if that is not known."""
-    values = {n: entries[n].value for n in (speed, *VECTORS[speed]) if n in entries}
-    exact = {name: value for name, value in values.items() if not entries[name].varies}
-    x, y, course = (exact.get(name) for name in VECTORS[speed])
-    if exact.get(speed) == 0:
-        return 0j
-    if x is not None and y is not None:
-        return complex(x, y)
-    if course is not None:
-        return cmath.rect(values.get(speed, 1.0), math.radians(course))
+def velocity(entries: Mapping[str, Amount], speed: str) -> Velocity | None:
+    """Return a velocity, None if its direction is not known exactly; its size is 1 if that is not
+    known."""
+    x, y, course = (entries.get(name) for name in VECTORS[speed])
+    size = entries.get(speed)
+    if size and not size.varies and not size.value:
+        return Velocity(0.0, 0.0)
+    if x and y and not (x.varies or y.varies):
+        angle = math.degrees(math.atan2(y.value, x.value))
+        return Velocity(math.hypot(x.value, y.value), angle)
+    if course and not course.varies:
+        return Velocity(size.value if size else 1.0, course.value)
     return None

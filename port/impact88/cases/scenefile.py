@@ -20,8 +20,7 @@ INPUTS = {**SCENE, **RESULTS, **CHAPTER}
 """Quantities that a file may give."""
 SOURCE = "_source"
 """Suffix of an entry that says where a value comes from: UX_source = "event data recorder"."""
-MAX_BYTES = 100_000  # bounds the time to read; a complete scene has 2,000
-MAX_LINE = 2_000  # characters; tomllib is slow with long keys
+MAX_CHARACTERS = 20_000  # tomllib takes a second for a key of that length; a scene has 2,000
 _KEY = re.compile(r"""[ \t]*\[?[ \t]*["']?([A-Za-z0-9_-]+)["']?[ \t]*[=\]]""")
 
 SIGNS = """\
@@ -37,34 +36,32 @@ The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) op
 """Sides, axes and signs."""
 
 
-def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
-    """Return the entries of a flat TOML document as texts, and their lines.
+def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the entries of a flat TOML document as texts, and their places: file and line.
 
     Raises
     ------
     UserError
         For text that is not TOML and for values that are neither numbers nor texts.
     """
-    lines = text.split("\n")
-    for number, line in enumerate(lines, 1):
-        if len(line) > MAX_LINE:
-            fault = f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE"
-            raise UserError(fault, f"{source}, line {number}")
+    if len(text) > MAX_CHARACTERS:
+        fault = f"is longer than {MAX_CHARACTERS:,} characters; expected NAME = VALUE a line"
+        raise UserError(fault, source)
+    places = {
+        match[1]: f"{source}, line {number}"
+        for number, line in enumerate(text.split("\n"), 1)
+        if (match := _KEY.match(line))
+    }
     try:
         values = tomllib.loads(text, parse_float=str)
-    except tomllib.TOMLDecodeError as error:
+    except (RecursionError, ValueError) as error:  # also a whole number of 4,300 digits
         advice = "expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
         raise UserError(f"is not TOML: {error}; {advice}", source) from None
-    except (RecursionError, ValueError):  # nested deeply; a whole number of 4,300 digits
-        raise UserError("is not a scene; expected one NAME = VALUE a line", source) from None
-    places = {
-        match[1]: number for number, line in enumerate(lines, 1) if (match := _KEY.match(line))
-    }
     for name, value in values.items():
         is_date = name in ABOUT and isinstance(value, datetime.date)
         if isinstance(value, bool) or not (is_date or isinstance(value, str | int)):
-            place = f"{source}, line {places[name]}" if name in places else source
-            raise UserError(f"{name} = {quoted(value)}: expected a number or a text", place)
+            fault = f"{name} = {quoted(value)}: expected a number or a text"
+            raise UserError(fault, places.get(name, source))
     return {name: str(value) for name, value in values.items()}, places
 
 
@@ -86,16 +83,12 @@ def write_toml(texts: Mapping[str, str], heading: str = "", view: View = PLAIN) 
         The file; `read_toml` gives the texts back.
     """
     lines = [f"# {line}".rstrip() for line in heading.splitlines()] + [""] * bool(heading)
-    names = dict.fromkeys((*ABOUT, *SCENE, *texts))
-    for name in dict.fromkeys(entry for n in names for entry in (n, n + SOURCE)):
-        if name not in texts:
-            continue
-        text = texts[name]
-        entry = f"{name} = {text if _PLAIN_TOML.fullmatch(text) else _toml_text(text)}"
-        row = INPUTS.get(name)
-        lines.append(
-            f"{entry:<20} # {row.meaning} [{view.unit(name) or row.unit}]" if row else entry
-        )
+    names = dict.fromkeys(n.removesuffix(SOURCE) for n in (*ABOUT, *SCENE, *texts))
+    for name in (entry for n in names for entry in (n, n + SOURCE) if entry in texts):
+        text, row = texts[name], INPUTS.get(name)
+        line = f"{name} = {text if _PLAIN_TOML.fullmatch(text) else _toml_text(text)}"
+        comment = f" # {row.meaning} [{view.unit(name) or row.unit}]" if row else ""
+        lines.append(f"{line:<20}{comment}" if row else line)
     return "\n".join(lines) + "\n"
 
 

@@ -8,6 +8,7 @@ a unit is the factor, SAE axes its sign, compass headings the offset. Results us
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -16,172 +17,123 @@ from typing import Any, NamedTuple
 
 from ..decimals import to_text
 from ..errors import UserError, quoted
-from ..names import (
-    ANGLE,
-    ENERGY,
-    FORCE,
-    IMPULSE,
-    INERTIA,
-    LENGTH,
-    MASS,
-    NUMBER,
-    PIVOT,
-    SPIN,
-    TIME,
-    TURNING,
-    VELOCITY,
-    quantity,
-)
+from ..names import NUMBER, PIVOT, quantity
 
 _TABLE = """
-length              | us     | ft                | ft foot feet
-length              | us     | 0.0254            | in inch inches
-length              | us     | 0.9144            | yd yard yards
-length              | us     | 1609.344          | mi mile miles
-length              | metric | 1                 | m meter meters metre metres
-length              | metric | 0.01              | cm
-length              | metric | 0.001             | mm
-length              | metric | 1000              | km
-length/time         | us     | 0.44704           | mph mi/h
-length/time         | us     | ft                | ft/s fps ft/sec
-length/time         | us     | 463/900           | kn kt knot knots
-length/time         | metric | 5/18              | km/h kph kmh
-length/time         | metric | 1                 | m/s m/sec
-mass                | us     | lb                | lb lbs pound pounds lbm lbf
-mass                | us     | lb g per-ft       | slug slugs
-mass                | metric | 1                 | kg kgs kilogram kilograms
-mass                | metric | 1000              | t tonne tonnes
-mass                | metric | per-g             | N
-mass                | metric | 1000 per-g        | kN
-mass·length²        | us     | lb g ft           | lb-ft-s2 ft-lb-s2 lbf-ft-s2 ft-lbf-s2 slug-ft2
-mass·length²        | us     | lb g 0.0254       | lb-in-s2 in-lb-s2
-mass·length²        | us     | lb ft ft          | lb-ft2 lbm-ft2
-mass·length²        | metric | 1                 | kg-m2 N-m-s2
-mass·length²/time²  | us     | lb g ft           | ft-lb lb-ft ft-lbf lbf-ft
-mass·length²/time²  | metric | 1                 | J N-m
-mass·length²/time²  | metric | 1000              | kJ kN-m
-mass·length/time²   | us     | lb g              | lb lbs pound pounds lbf
-mass·length/time²   | metric | 1                 | N
-mass·length/time²   | metric | 1000              | kN
-mass·length/time    | us     | lb g              | lb-s lbf-s slug-ft/s
-mass·length/time    | metric | 1                 | N-s kg-m/s
-mass·length/time    | metric | 1000              | kN-s
-mass·length²/time   | us     | lb g ft           | ft-lb-s lb-ft-s ft-lbf-s lbf-ft-s
-mass·length²/time   | metric | 1                 | N-m-s kg-m2/s
-time                |        | 1                 | s sec second seconds
-time                |        | 0.001             | ms
-rad/time            |        | 1                 | rad/s rad/sec
-rad/time            |        | pi 1/180          | deg/s °/s degree/s degrees/s deg/sec
-rad/time            |        | pi 1/30           | rpm
-degree              |        | 1                 | deg ° degree degrees
-degree              |        | 180 per-pi        | rad radian radians
-percent             |        | 1                 | % percent
-1                   |        | 0.01              | % percent
+length              | us     | us chapter | ft              | ft foot feet
+length              | us     |            | 0.0254          | in inch inches
+length              | us     |            | 0.9144          | yd yard yards
+length              | us     |            | 1609.344        | mi mile miles
+length              | metric | metric si  | 1               | m meter meters metre metres
+length              | metric |            | 0.01            | cm
+length              | metric |            | 0.001           | mm
+length              | metric |            | 1000            | km
+length/time         | us     | us         | 0.44704         | mph mi/h
+length/time         | us     | chapter    | ft              | ft/s fps ft/sec
+length/time         | us     |            | 463/900         | kn kt knot knots
+length/time         | metric | metric     | 5/18            | km/h kph kmh
+length/time         | metric | si         | 1               | m/s m/sec
+mass                | us     | us         | lb              | lb lbs pound pounds
+mass                | us     | chapter    | lb g per-ft     | slug slugs
+mass                | metric | metric si  | 1               | kg kgs kilogram kilograms
+mass                | metric |            | 1000            | t tonne tonnes
+mass                | metric |            | per-g           | N
+mass                | metric |            | 1000 per-g      | kN
+mass·length²        | us     | us chapter | lb g ft         | lb-ft-s2 ft-lb-s2 slug-ft2
+mass·length²        | us     |            | lb g 0.0254     | lb-in-s2 in-lb-s2
+mass·length²        | us     |            | lb ft ft        | lb-ft2
+mass·length²        | metric | metric si  | 1               | kg-m2 N-m-s2
+mass·length²/time²  | us     | us chapter | lb g ft         | ft-lb lb-ft
+mass·length²/time²  | metric | metric si  | 1               | J N-m
+mass·length²/time²  | metric |            | 1000            | kJ kN-m
+mass·length/time²   | us     | us chapter | lb g            | lb lbs pound pounds
+mass·length/time²   | metric | metric si  | 1               | N
+mass·length/time²   | metric |            | 1000            | kN
+mass·length/time    | us     | us chapter | lb g            | lb-s slug-ft/s
+mass·length/time    | metric | metric si  | 1               | N-s kg-m/s
+mass·length/time    | metric |            | 1000            | kN-s
+mass·length²/time   | us     | us chapter | lb g ft         | ft-lb-s lb-ft-s
+mass·length²/time   | metric | metric si  | 1               | N-m-s kg-m2/s
+time                |        | all        | 1               | s sec second seconds
+time                |        |            | 0.001           | ms
+rad/time            |        | all        | 1               | rad/s rad/sec
+rad/time            |        |            | pi 1/180        | deg/s °/s degree/s degrees/s deg/sec
+rad/time            |        |            | pi 1/30         | rpm
+degree              |        | all        | 1               | deg ° degree degrees
+degree              |        |            | 180 per-pi      | rad radian radians
+percent             |        |            | 1               | % percent
+1                   |        |            | 0.01            | % percent
 """
-"""The units that an amount may have: rule of the quantity (`names`), side, size in m, kg, s,
-degrees and rad/s as a product, and spellings, the first of which is shown. A mass may be given as
-its weight."""
+"""The units that an amount may have: rule of the quantity (`names`), side, systems that show it,
+size in m, kg, s, degrees and rad/s as a product, and spellings, the first of which is shown. A mass
+may be given as its weight."""
 FOOT = Fraction("0.3048")  # m
 POUND = Fraction("0.45359237")  # kg
 GRAVITY = Fraction("9.80665")  # m/s²
-SLUG = POUND * GRAVITY / FOOT  # kg
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
-_FACTORS = {"lb": POUND, "g": GRAVITY, "ft": FOOT, "pi": PI}
-_FACTORS |= {f"per-{name}": 1 / factor for name, factor in _FACTORS.items()}
+_FACTORS = {"lb": POUND, "g": GRAVITY, "ft": FOOT}
+_FACTORS |= {"per-ft": 1 / FOOT, "per-g": 1 / GRAVITY, "pi": PI, "per-pi": 1 / PI}
+_BASES = {"us": "chapter", "chapter": "chapter", "metric": "si", "si": "si"}
+"""Choices of ``units``, each with the system whose units are its base units."""
+_CHOICES = {"units": _BASES, "axes": ("listing", "sae"), "headings": ("listing", "compass")}
 
 
 class Unit(NamedTuple):
-    """A unit: the symbol shown, its size, and its side, "us", "metric" or "" for both."""
+    """A unit: the symbol shown, its size, its side, "us", "metric" or "" for both, and the systems
+    that show it."""
 
     symbol: str
     size: Fraction
     side: str
+    systems: str
 
 
 @lru_cache(maxsize=1)
-def _units() -> dict[tuple[str, str], Unit]:
+def _units() -> dict[str, dict[str, Unit]]:
     """Return the units of `_TABLE` by rule and normalized spelling."""
-    units: dict[tuple[str, str], Unit] = {}
+    units: dict[str, dict[str, Unit]] = {}
     for row in _TABLE.strip().splitlines():
-        rule, side, product, spellings = (cell.strip() for cell in row.split("|"))
+        rule, side, systems, product, spellings = (cell.strip() for cell in row.split("|"))
         size = Fraction(1)
         for factor in product.split():
             size *= _FACTORS.get(factor) or Fraction(factor)
-        unit = Unit(spellings.partition(" ")[0], size, side)
-        units |= {(rule, _normalize(symbol)): unit for symbol in spellings.split()}
+        systems = systems.replace("all", " ".join(_BASES))
+        unit = Unit(spellings.partition(" ")[0], size, side, systems)
+        symbols = {_normalize(symbol): unit for symbol in spellings.split()}
+        units[rule] = units.get(rule, {}) | symbols
     return units
 
 
 def _normalize(symbol: str) -> str:
-    """Return a spelling of a unit without blanks, marks of products and powers, and capitals."""
-    return re.sub(r"[\s·*.^-]", "", symbol.replace("²", "2").replace(" per ", "/")).lower()
+    """Return a spelling of a unit without blanks, marks of products and powers, capitals, and the
+    letter of lbf and lbm."""
+    plain = symbol.lower().replace("²", "2").replace(" per ", "/")
+    return re.sub(r"[\s·*.^-]|(?<=lb)[fm](?![a-z])", "", plain)
 
 
 def unit_of(rule: str, symbol: str) -> Unit:
     """Return the unit of a rule that a text spells. Raises UserError if it does not measure the
     quantity."""
-    unit = _units().get((rule, _normalize(symbol)))
-    if unit is None:
-        choices = dict.fromkeys(u.symbol for (r, _), u in _units().items() if r == rule)
+    units = _units().get(rule, {})
+    if _normalize(symbol) not in units:
+        choices = ", ".join(dict.fromkeys(unit.symbol for unit in units.values()))
         kind = "a ratio" if rule == NUMBER else rule.replace("·", " ")
-        raise UserError(f"{symbol} is not a unit of {kind}; expected {', '.join(choices)}")
-    return unit
+        raise UserError(f"{symbol} is not a unit of {kind}; expected {choices}")
+    return units[_normalize(symbol)]
 
 
-DIMENSIONS = {
-    LENGTH: (1, 0),
-    VELOCITY: (1, 0),
-    MASS: (0, 1),
-    INERTIA: (2, 1),
-    ENERGY: (2, 1),
-    FORCE: (1, 1),
-    IMPULSE: (1, 1),
-    TURNING: (2, 1),
-}
-"""Powers of length and mass, of the rules whose base unit depends on the system."""
+@lru_cache(maxsize=256)
+def shown_unit(rule: str, system: str) -> Unit | None:
+    """Return the unit in which a system shows values of a rule, None without one."""
+    units = _units().get(rule, {}).values()
+    return next((unit for unit in units if system in unit.systems.split()), None)
 
 
-class System(NamedTuple):
-    """A system of units: its base units of length and mass in m and kg, and the unit in which
-    values of each rule are shown."""
+def is_measured(rule: str) -> bool:
+    """Return True for a rule whose base unit depends on the system."""
+    unit = shown_unit(rule, "si")
+    return bool(unit and unit.side)
 
-    length: Fraction
-    mass: Fraction
-    shown: dict[str, str]
-
-
-_BOTH = {TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
-_FEET = {
-    LENGTH: "ft",
-    INERTIA: "lb-ft-s2",
-    ENERGY: "ft-lb",
-    FORCE: "lb",
-    IMPULSE: "lb-s",
-    TURNING: "ft-lb-s",
-    **_BOTH,
-}
-_METERS = {
-    LENGTH: "m",
-    INERTIA: "kg-m2",
-    ENERGY: "J",
-    FORCE: "N",
-    IMPULSE: "N-s",
-    TURNING: "N-m-s",
-    MASS: "kg",
-    **_BOTH,
-}
-SYSTEMS = {
-    "us": System(FOOT, SLUG, {**_FEET, VELOCITY: "mph", MASS: "lb"}),
-    "chapter": System(FOOT, SLUG, {**_FEET, VELOCITY: "ft/s", MASS: "slug"}),
-    "metric": System(Fraction(1), Fraction(1), {**_METERS, VELOCITY: "km/h"}),
-    "si": System(Fraction(1), Fraction(1), {**_METERS, VELOCITY: "m/s"}),
-}
-"""Choices of ``units``."""
-_CHOICES = {
-    "units": tuple(SYSTEMS),
-    "axes": ("listing", "sae"),
-    "headings": ("listing", "compass"),
-}
 
 FROM_NORTH = frozenset("TA TB HA HB HAF HBF".split())
 """Directions of vehicles and velocities, clockwise from north with compass headings."""
@@ -245,17 +197,15 @@ class View:
         """Return the entries of a file with this view, without defaults."""
         return {name: word for name, word in asdict(self).items() if word}
 
-    @lru_cache(maxsize=256)  # noqa: B019 - views are few, and equal ones share an entry
     def base_size(self, rule: str) -> Fraction:
         """Return the size of the base unit of a rule in m, kg, s."""
-        if rule not in DIMENSIONS or not self.units:
-            return Fraction(1)
-        system, (length, mass) = SYSTEMS[self.units], DIMENSIONS[rule]
-        return system.length**length * system.mass**mass
+        unit = shown_unit(rule, _BASES.get(self.units, ""))
+        return unit.size if unit else Fraction(1)
 
     def unit(self, name: str) -> str:
         """Return the unit a quantity is shown in; "" for a pure number and without units."""
-        return SYSTEMS[self.units].shown.get(quantity(name).unit, "") if self.units else ""
+        unit = shown_unit(quantity(name).unit, self.units)
+        return unit.symbol if unit else ""
 
     def heading(self, name: str) -> str:
         """Return the heading of a column, such as ``DVA [mph]``."""
@@ -311,8 +261,8 @@ class View:
     def shown_ends(self, name: str, low: float, high: float) -> tuple[float, float]:
         """Return two limits as shown, the lower first; directions are not reduced to one turn."""
         factor, offset = (float(x) for x in self.map(name))
-        first, second = sorted((end - offset) / factor for end in (low, high))
-        return first, second
+        ends = (low - offset) / factor, (high - offset) / factor
+        return min(ends), max(ends)
 
     def _turns(self, name: str) -> bool:
         """Return True for directions that are shown from 0 to 360 degrees, from north."""
@@ -335,20 +285,10 @@ def _affine_map(view: View, name: str, unit: str) -> tuple[Fraction, Fraction]:
     return (-factor if view.axes and name in MIRRORED else factor), Fraction(0)
 
 
-def system_using(units: list[tuple[str, str]]) -> str:
+def system_using(units: Iterable[Unit]) -> str:
     """Return the system, us or metric, of values written with units, "" if the units name none.
-
-    Parameters
-    ----------
-    units : list of (str, str)
-        Rule and symbol of each unit.
-
-    Raises
-    ------
-    UserError
-        For units of two systems.
-    """
-    sides = {unit_of(rule, symbol).side for rule, symbol in units} - {""}
+    Raises UserError for units of two systems."""
+    sides = {unit.side for unit in units} - {""}
     if len(sides) > 1:
         raise UserError('units of two systems; expected units = "us" or "metric", too (--units)')
     return "".join(sides)

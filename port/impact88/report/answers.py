@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import status
 from ..cases.case import Case
-from ..cases.scenefile import INPUTS
+from ..cases.scenefile import INPUTS, SOURCE
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import (
@@ -278,7 +278,7 @@ def given_of(case: Case) -> tuple[Row, ...]:
         if name in INPUTS:
             has_unit = any(c.isalpha() or c == "%" for c in entry)
             unit = "" if has_unit else unit_of(case, name)
-            source = case.sources.get(name, "")
+            source = case.written.get(name + SOURCE, "")
             rows.append(Row(name, case.view.meaning(name), unit, entry, source))
     return tuple(rows)
 

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from ..cases.amounts import MAX_LENGTH, Amount
 from ..cases.case import POINT_DEFAULTS, Case
-from ..cases.estimates import SIZES
-from ..cases.plausibility import implausible, impossible
-from ..cases.units import DIMENSIONS, PLAIN, View, system_using, unit_of
+from ..cases.plausibility import Remark, implausible, impossible
+from ..cases.units import PLAIN, View, is_measured, system_using, unit_of
 from ..decimals import is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..mechanics.solve import evaluate, solve
@@ -169,8 +168,7 @@ class Solver:
         self.table, self.as_text, self.solved = table, as_text, Solved()
         self.is_applesoft = arithmetic == "applesoft"
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
-        self.results = tuple(results) or allowed
-        check_names(self.results, allowed, f"result of --arithmetic {arithmetic}", "--results")
+        check_names(results, allowed, f"result of --arithmetic {arithmetic}", "--results")
         case = case or Case.of({}, view=view)
         try:
             headings, self.view = read_headings(table.names, case.view)
@@ -181,30 +179,26 @@ class Solver:
         self.case = case
         self.replaced = {*replaced} & {*case.entries}
         self.columns = {n: h for n, h in headings.items() if n in SCENE and n not in self.replaced}
-        self.kept = {
-            heading: heading_name(heading)[0]
-            for heading in table.names
-            if not (results_only and heading_name(heading)[0] in SCENE)
-        }
+        names = {heading: heading_name(heading)[0] for heading in table.names}
+        self.kept = {h: name for h, name in names.items() if name not in SCENE or not results_only}
         self.constants = {n: x for n, x in case.numbers.items() if n not in self.columns}
         self.derived = {*case.derived} - {*self.columns}  # each row has its own
         self._counts: dict[str, tuple[int, int, str]] = {}
-        self._leave_out_results()
+        self._choose_results(tuple(results) or allowed)
 
-    def _leave_out_results(self) -> None:
-        """Leave out results of point masses whose inputs are missing. Raises UserError where the
-        table lacks another column."""
+    def _choose_results(self, results: Sequence[str]) -> None:
+        """Set the results, without those of point masses whose inputs the table lacks. Raises
+        UserError where it lacks another column."""
         present = {*self.columns, *self.constants, *self.derived}
-        may_be_points = "M" in self.columns or self.constants.get("M") == 4
         self.lacking = [name for name in SCENE if name not in present]
+        may_be_points = "M" in self.columns or self.constants.get("M") == 4
         absent = [n for n in self.lacking if not may_be_points or n not in POINT_DEFAULTS]
         if absent:
             message = f"no column {' '.join(absent)}; --set NAME=VALUE gives one for all rows"
             raise UserError(message, self.table.where)
-        scene = dict.fromkeys(present, 1.0) | {"WA": 0.0, "WB": 0.0, "M": 4.0}
-        is_complete = self.is_applesoft or not self.lacking
-        self.left_out = {} if is_complete else evaluate(scene, self.results)[1]
-        self.results = tuple(name for name in self.results if name not in self.left_out)
+        scene = {"WA": 0.0, "WB": 0.0, **dict.fromkeys(present, 1.0), "M": 4.0}
+        self.left_out = {} if self.is_applesoft else evaluate(scene, results)[1]
+        self.results = [name for name in results if name not in self.left_out]
         if not self.results:
             raise UserError("; ".join(self.remarks()), self.table.where)
 
@@ -220,7 +214,8 @@ class Solver:
         """Return a block with its results."""
         rows = _Rows(self, block)
         results = rows.replay() if self.is_applesoft else rows.solve()
-        self._remark(rows)
+        for name, where, words in rows.implausible():
+            self._count(rows, name, where, words)
         bad = sorted(rows.bad)
         for name, values in results.items():
             values[bad] = _EMPTY.get(name, math.nan)
@@ -237,24 +232,14 @@ class Solver:
             columns[heading] = self.view.shown(name, values) if is_result else values
         return columns
 
-    @np.errstate(all="ignore")
-    def _remark(self, rows: _Rows) -> None:
-        """Count the rows that each plausibility remark applies to."""
-        values = rows.values
-        courses = {}
-        for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
-            rests = (values[x] == 0) & (values[y] == 0)
-            angle = np.degrees(np.arctan2(values[y], values[x]))
-            courses[vehicle] = np.where(rests, math.nan, angle)
-        amounts = self.case.sizes
-        sizes = {v: [amounts[n].value for n in pair if n in amounts] for v, pair in SIZES.items()}
-        for name, mask, words in implausible(values, self.view, courses, sizes):
-            places = np.flatnonzero(np.broadcast_to(mask, rows.count))
-            if places.size and name in self.columns:
-                cell = rows.block.columns[self.columns[name][0]][int(places[0])]
-                first = rows.block.rows[places[0]], 0, f"{name} = {cell}: {words}"
-                row, count, text = self._counts.get(name, first)
-                self._counts[name] = row, count + places.size, text
+    def _count(self, rows: _Rows, name: str, where: Any, words: str) -> None:
+        """Count the rows that a remark applies to."""
+        places = np.flatnonzero(np.broadcast_to(where, rows.count))
+        if places.size and name in self.columns:
+            cell = rows.cells(name)[int(places[0])]
+            first = rows.block.rows[places[0]], 0, f"{name} = {cell}: {words}"
+            row, count, text = self._counts.get(name, first)
+            self._counts[name] = row, count + places.size, text
 
 
 class _Rows:
@@ -271,16 +256,14 @@ class _Rows:
         constants = {**dict.fromkeys(SCENE, math.nan), **solver.constants}
         self.values = {name: np.full(self.count, value) for name, value in constants.items()}
         is_other = np.full(self.count, bool(solver.derived))
-        for name, (_, unit) in solver.columns.items():
-            factor, offset = (float(x) for x in solver.view.map(name, unit))
-            shown = self.shown[name]
-            self.values[name] = (
-                shown.copy() if factor == 1 and not offset else offset + factor * shown
-            )
+        for name, shown in self.shown.items():
+            factor, offset = self.map(name)
+            self.values[name] = offset + factor * shown
             is_other |= ~np.isfinite(shown)
             if solver.is_applesoft:
-                lengths = [len(str(cell)) for cell in self.cells(name)]
-                is_other |= np.array(lengths, int) > MAX_LENGTH
+                is_other |= np.array(
+                    [len(str(cell)) > MAX_LENGTH for cell in self.cells(name)], bool
+                )
         for name in solver.lacking:
             default = float(POINT_DEFAULTS[name])
             self.values[name] = np.where(self.values["M"] == 4, default, math.nan)
@@ -294,6 +277,11 @@ class _Rows:
     def cells(self, name: str) -> Column:
         """Return the cells of a column."""
         return self.block.columns[self.solver.columns[name][0]]
+
+    def map(self, name: str) -> tuple[float, float]:
+        """Return factor and offset from a column's cells to base units."""
+        factor, offset = self.solver.view.map(name, self.solver.columns[name][1])
+        return float(factor), float(offset)
 
     def place(self, at: int) -> str:
         """Return the place of a row for messages."""
@@ -321,20 +309,18 @@ class _Rows:
 
     def solve(self) -> dict[str, NDArray[Any]]:
         """Return the results in double precision."""
-        values = self.values
-        for name, mask, words in impossible(values):
+        for name, mask, words in impossible(self.values):
             for at in np.flatnonzero(np.broadcast_to(mask, self.count)).tolist():
-                reason = f"{self.place(at)}: {name} = {to_text(float(values[name][at]))} {words}"
-                self.bad.setdefault(at, reason)
-        solution = solve(values, self.solver.results)
+                digits = to_text(float(self.values[name][at]))
+                self.bad.setdefault(at, f"{self.place(at)}: {name} = {digits} {words}")
+        solution = solve(self.values, self.solver.results)
         return {name: np.array(np.broadcast_to(x, self.count)) for name, x in solution.items()}
 
     def replay(self) -> dict[str, NDArray[Any]]:
         """Return the results of the 1988 arithmetic."""
         from ..program.replay import replay
 
-        texts = {name: self._texts(name) for name in SCENE}
-        outcome = replay({name: column or ["6"] for name, column in texts.items()})
+        outcome = replay({name: self._texts(name) or ["6"] for name in SCENE})
         results = {name: outcome.floats(name) for name in self.solver.results}
         results["ERROR"] = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
         results["LINE"] = np.array(outcome.line)
@@ -344,25 +330,29 @@ class _Rows:
         """Return a column as the digits typed into the 1988 program."""
         solver = self.solver
         if name in solver.columns:
+            cells = [_entry(cell, "").upper() for cell in self.cells(name)]
+            texts = [text if is_number(text) else "0" for text in cells]  # others are cases
             factor, offset = solver.view.map(name, solver.columns[name][1])
-            is_base = factor == 1 and not offset
-            texts = [
-                x.strip().upper() if isinstance(x, str) else to_text(float(x))
-                for x in self.cells(name)
-            ]
+            if factor != 1 or offset:
+                exact = (Amount.exactly(to_double(text), text) for text in texts)
+                texts = [amount.mapped(factor, offset).typed for amount in exact]
         else:
-            is_base = True
             texts = [solver.case.texts.get(name) or POINT_DEFAULTS.get(name, "")] * self.count
-        if not is_base:
-            texts = [
-                Amount.exactly(0.0, text).mapped(factor, offset).typed if is_number(text) else ""
-                for text in texts
-            ]
         for at, case in self.cases.items():
             texts[at] = case.texts[name]
         for at in self.bad:
             texts[at] = "6"
         return texts
+
+    @np.errstate(all="ignore")
+    def implausible(self) -> list[Remark]:
+        """Return the remarks on implausible values."""
+        courses = {}
+        for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
+            angle = np.degrees(np.arctan2(self.values[y], self.values[x]))
+            rests = (self.values[x] == 0) & (self.values[y] == 0)
+            courses[vehicle] = np.where(rests, math.nan, angle)
+        return list(implausible(self.values, self.solver.view, courses))
 
     def output_column(self, heading: str) -> Column:
         """Return a column of the table for the output."""
@@ -371,9 +361,8 @@ class _Rows:
             return solver.view.shown(name, self.values[name])
         if name not in self.shown or solver.as_text:
             return self.block.columns.get(heading, [None] * self.count)
-        column = np.array(self.shown[name])
-        factor, offset = (float(x) for x in solver.view.map(name, solver.columns[name][1]))
-        rows = [*self.cases]
+        column, rows = self.shown[name].copy(), [*self.cases]
+        factor, offset = self.map(name)
         column[rows] = (self.values[name][rows] - offset) / factor
         return column
 
@@ -417,19 +406,18 @@ def read_headings(
     Raises UserError for two columns of one quantity, for a unit that does not measure it, and where
     only some headings have units."""
     headings: dict[str, tuple[str, str]] = {}
-    units = {}
     for heading in names:
-        name, unit = heading_name(heading)
+        name, symbol = heading_name(heading)
         if name in headings:
             raise UserError(f"{headings[name][0]} and {heading} are two columns of {name}")
         if name:
-            rule = quantity(name).unit
-            symbol = unit_of(rule, unit).symbol if unit and name in measured else ""
-            headings[name] = heading, symbol
-            if name in measured and rule in DIMENSIONS:
-                units[name] = rule, symbol
-    system = view.units or system_using([pair for pair in units.values() if pair[1]])
-    bare = [name for name, (_, unit) in units.items() if not unit]
+            is_read = bool(symbol) and name in measured
+            unit = unit_of(quantity(name).unit, symbol).symbol if is_read else ""
+            headings[name] = heading, unit
+    rules = {n: quantity(n).unit for n in headings if n in measured}
+    bare = [n for n, rule in rules.items() if is_measured(rule) and not headings[n][1]]
+    units = [unit_of(rule, headings[n][1]) for n, rule in rules.items() if headings[n][1]]
+    system = view.units or system_using(units)
     if system and bare and not view.units:
         raise UserError(
             f"some headings have units, and {bare[0]} has none; expected "

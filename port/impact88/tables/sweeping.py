@@ -8,9 +8,8 @@ from math import isfinite, prod
 
 import numpy as np
 
-from ..cases.amounts import Amount
 from ..cases.case import Case
-from ..decimals import to_double, to_text
+from ..decimals import to_text
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from .textformats import BLOCK_ROWS, Block, Table
@@ -31,7 +30,7 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
     Returns
     -------
     Table
-        The columns of the ranges, or without any those of the scene, in the case's view.
+        The columns of the ranges, in the case's view.
 
     Raises
     ------
@@ -40,29 +39,17 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
     """
     ranges = ranges or {}
     check_names(ranges, tuple(SCENE), "value of a scene", "--sweep")
-    values = {name: _values(case, name, text) for name, text in ranges.items()}
+    values = {case.view.heading(n): _values(case, n, text) for n, text in ranges.items()}
     if prod(map(len, values.values())) > MAX_SCENES:
         raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
-    if not ranges:
-        given = [name for name in case.texts if name not in case.omitted]
-        values = {name: [_shown_digits(case, name)] for name in given}
-    names = [case.view.heading(name) for name in values]
     rows = enumerate(product(*values.values()), 1)
 
     def blocks() -> Iterator[Block]:
         while block := list(islice(rows, BLOCK_ROWS)):
-            columns = zip(names, zip(*(row for _, row in block), strict=True), strict=True)
+            columns = zip(values, zip(*(row for _, row in block), strict=True), strict=True)
             yield Block({n: list(c) for n, c in columns}, [number for number, _ in block])
 
-    return Table(names, blocks(), case.source)
-
-
-def _shown_digits(case: Case, name: str) -> str:
-    """Return a value as shown, with the digits typed where nothing but its sign is converted."""
-    (factor, offset), text = case.view.map(name), case.texts[name]
-    value = to_double(text)
-    shown = Amount.exactly(value, text).mapped(1 / factor, -offset / factor)
-    return shown.text or case.view.shown_text(name, value)
+    return Table([*values], blocks(), case.source)
 
 
 def _values(case: Case, name: str, text: str) -> list[str]:
