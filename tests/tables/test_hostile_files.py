@@ -13,7 +13,16 @@ from impact88.tables.solving import solve_table
 
 PIECES = [b'"', b"'", b",", b";", b"\n", b"\r", b"\0", b"\xff", b"[" * 90, b"{", b"=", b"9" * 400]
 PIECES += [b"1e999999999", b"1e-999999999", b"nan", b"inf", b"..", b"+-", b"\xff\xfe", b"," * 2000]
-SCENE = 'units = "us"\nMA = {value = "2,000 lb", source = "x"}\nIA = "estimate"\nDA = "6 ft 6 in"\n'
+SCENE = """units = "us"
+MA = "2,000 lb"
+MA_source = "x"
+IA = "estimate +- 20 %"
+DA = "6 ft 6 in"
+UX = "normal 30 2 mph"
+UY = 3
+TA = "course"
+SAF = "skid 62 ft at 0.7 +- 0.05"
+"""
 
 
 def damage(data: bytes, rng: random.Random) -> bytes:

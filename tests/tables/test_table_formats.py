@@ -95,6 +95,7 @@ def test_csv_has_the_bits_of_floats(tmp_path: Path) -> None:
         ("MA,,MB 1,2,3", "the headings have one that is empty"),
         ("", "has no line of 1 to 10,000 headings"),
         ('HEAD ROW "ROW', "is not CSV"),
+        ("MA,MB\rHEAD ROW", "is not CSV"),
         ("HEAD ROW \udcffROW", "line 3: is not UTF-8 text"),
     ],
 )

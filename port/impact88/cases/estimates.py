@@ -59,7 +59,10 @@ def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str,
     elif view.units and not sizes and MIN_WEIGHT <= pounds <= MAX_WEIGHT:
         unit = float(unit_of(INERTIA, "lb-ft-s2").size / view.base_size(INERTIA))
         value = (SLOPE * pounds - OFFSET) * unit
-        rule = f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2; 6 to 29 % high on seven"
+        rule = (
+            f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
+            "6 to 29 % high on seven of them"
+        )
     else:
         raise UserError(
             f"{name} = {ESTIMATE} from the weight is for passenger cars of {MIN_WEIGHT:,} to "

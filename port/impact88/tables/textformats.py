@@ -93,7 +93,11 @@ def read_csv(path: str) -> Table:
     head = _decode(line, where, 1).removeprefix("\ufeff")
     delimiter = max(",;\t", key=head.count)
     csv.field_size_limit(LONGEST_LINE)
-    names = check_headings(next(csv.reader([head], delimiter=delimiter), []), where)
+    try:
+        fields = next(csv.reader([head], delimiter=delimiter, strict=True), [])
+    except csv.Error as error:
+        raise UserError(f"is not CSV: {error}", where) from None
+    names = check_headings(fields, where)
 
     def blocks() -> Iterator[Block]:
         number = 2
