@@ -113,6 +113,7 @@ def test_estimate_is_for_passenger_cars() -> None:
     for weight in ("1,499 lb", "6001"):
         with pytest.raises(UserError, match="passenger cars of 1,500 to 6,000 lb"):
             of(weight)
+    assert Case.of({"MA": "3000 lb", "IA": "estimate"}).entries["IA"].value == 1884
     case = of("800", LA="10", BA="5")
     assert case.entries["IA"].value == float(f"{800 / 32.17405 * 125 / 12:.4g}")
     assert case.derived == ("IA",)
@@ -206,8 +207,3 @@ def test_files_are_written_back() -> None:
     text = 'title = "a \\"b\\" \\\\ c"\nunits = "us"\nUX = "30 +- 2"\nUX_source = "EDR"\nSA = 31'
     case = Case.loads(text)
     assert Case.loads(case.toml()) == case
-
-
-@pytest.mark.parametrize("text", ["1 +- 1", "0 .. 1", "normal 0 1"])
-def test_a_speed_may_reach_down_to_rest(text: str) -> None:
-    assert Case.loads(f'SB = "{text}"').entries["SB"].value >= 0
