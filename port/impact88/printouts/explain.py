@@ -31,8 +31,7 @@ SINGLE_ERROR = 1e-5
 DOUBLE = "computed in double precision, not by an Apple"
 SINGLE = "computed in single precision, not by an Apple"
 NOT_COMPUTED = (
-    "the results were not computed from these inputs: inputs or results, more than one number, "
-    "were altered"
+    "the results were not computed from these inputs, and no slip in one input explains all of them"
 )
 Scene = Mapping[str, str]
 

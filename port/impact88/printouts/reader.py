@@ -44,6 +44,7 @@ NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
 ENDING = re.compile(r"ZERODETERMINANT|\?[A-Z']{5,30}ERROR(?:IN[0-9]+)?")
+LINE_END = re.compile(r"[^\S\n]*(\r?\n|$)")
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
 MACHINE_READ = 3
 """Misread characters of labels and damaged numbers from which a machine read the page."""
@@ -170,6 +171,11 @@ class Reading:
             first, last = places.get(SLOT_CELLS[name], (start, stop))
             places[SLOT_CELLS[name]] = min(start, first), max(stop, last)
         return places
+
+    def ends_line(self, name: str) -> bool:
+        """Return True for a number that nothing follows in its line: it may have been cut."""
+        slot = self.slots.get(name)
+        return bool(slot and LINE_END.match(self.text, slot.glyphs[-1].offset + 1))
 
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and behind the last character of the page's own."""

@@ -1,69 +1,53 @@
-"""The scene that a page comes from: combinations of what its inputs may be, replayed bit for bit.
+"""The scene that a page comes from: what its inputs may be, replayed bit for bit.
 
 A scene costs what its inputs do, plus what it costs that each result it prints is the one that was
-read: the more, the further off it is. The scene as read is tried first; where it leaves a result
-unexplained, the cheapest combinations of readings; then slips in inputs read with doubt, while they
-explain more. An input that was read cleanly is replaced only if another value of it alone explains
-every result that differs.
+read: the more, the further off it is. From the scene as read, one input at a time is changed as
+long as the cost falls: to another reading or spelling first, then, while results differ, to a slip
+in an input read with doubt. An input that was read cleanly is replaced only if another value of it
+alone explains every result that differs.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from itertools import chain
+from itertools import compress
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED
-from .numerals import TYPED, opposite, readings, slips, stored_and_printed
+from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED, WRONG
+from .numerals import MAX_DIGITS, TYPED, opposite, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
 
-MAX_CANDIDATES = 10_000
-"""Combinations of readings that are replayed: four digits that nobody can read, .1 s."""
-MAX_OPTIONS = 40
-"""Texts that an input may be."""
-MAX_ROUNDS = 4
-"""Slips that a scene may have."""
-STEPS = sorted(range(-20, 21), key=abs)
-"""Units of a place by which a value is varied: two of the place before it."""
-PLACES = range(3, -5, -1)
-"""Places of a value that are varied, from its first digit's: a cut number has lost some."""
+STEPS = sorted(range(-18, 19), key=abs)
+"""Units of a place by which a value is varied: those of ten degrees reach round the circle."""
 MIN_RESULTS = 2
 """Results that differ from which an input may explain them: one is rather altered itself."""
-HALF_TURN = Decimal(180)
-DEGREES = Decimal(10)
-"""Largest unit by which an angle is varied: the results turn with it."""
+TENS = 1
+"""Place of ten degrees, from which angles are varied: the results turn with them."""
 TINY = 1e-38
 """Less than any number that the Apple prints."""
+TEXT = "S16"
+CIRCLE = Decimal(360)
 FINAL_SPINS = ("WAF", "WBF")
 
 Texts = dict[str, str]
 
 
 class Option(NamedTuple):
-    """Possible text of an input: its printed and its typed text, and their cost."""
+    """Possible text of an input (or M): its name, its printed and typed text, and their cost."""
 
+    name: str
     printed: str
     typed: str
     cost: float
-
-
-class Candidate(NamedTuple):
-    """Printed and typed texts of a scene's inputs, M, their cost, and the input that was read
-    cleanly as another."""
-
-    printed: Texts
-    typed: Texts
-    M: str
-    cost: float
-    replaced: str = ""
 
 
 @dataclass(frozen=True)
@@ -72,28 +56,33 @@ class Recovered:
 
     Parameters
     ----------
-    candidate : Candidate
-        Its inputs as believed.
+    inputs : dict of str to Option
+        What its inputs are believed to be.
     mismatch : float
         The cost of its results.
-    scene : dict of str to str
-        The scene as typed.
     fields : dict of str to str
         The numbers that the program prints.
     ending : str
         The message that ends the program, "" for a normal end.
+    changed : str
+        The input that was changed last.
     """
 
-    candidate: Candidate
+    inputs: dict[str, Option]
     mismatch: float
-    scene: Texts
     fields: Texts
     ending: str
+    changed: str
 
     @property
     def cost(self) -> float:
         """Cost of inputs and results."""
-        return self.candidate.cost + self.mismatch
+        return self.mismatch + sum(option.cost for option in self.inputs.values())
+
+    @property
+    def scene(self) -> Texts:
+        """The scene as typed."""
+        return {scene_name(name): option.typed for name, option in self.inputs.items()}
 
 
 def scene_name(name: str) -> str:
@@ -123,27 +112,18 @@ def find_scenes(
     columns = {name: _options(reading, name, given, program) for name in INPUTS}
     if missing := [name for name, options in columns.items() if not options]:
         return [], missing
-    search = _Search(reading, given, program)
     has_spins = all(name in reading.slots for name in FINAL_SPINS)  # M = 4 prints none
-    ms = [("6", 0.0)] if has_spins else [("4", 0.0), ("6", ALIKE)]
-    if "M" in given:
-        ms = [(given["M"], 0.0)]
-    first = {name: options[:1] for name, options in columns.items()}
-    best = search.replay(_combinations(first, ms, len(ms)))[0]
+    ms = {given["M"]: 0.0} if "M" in given else {"6": 0.0} if has_spins else {"4": 0.0, "6": ALIKE}
+    columns["M"] = [Option("M", m, m, cost) for m, cost in ms.items()]
+    search = _Search(reading, given, program)
+    options = [option for options in columns.values() for option in options]
+    first = {name: options[0] for name, options in columns.items()}
+    best = search.improve(search.replay(first, [first["M"]])[0], options)
     if best.mismatch >= CONTRADICTED:
-        best = search.replay(_combinations(columns, ms, MAX_CANDIDATES))[0]
-    is_exact = len(search.clean) == len(search.read)  # else what is in doubt is repaired first
-    if is_exact and (scenes := search.replace(best)):
-        return scenes, []
-    repaired = best
-    for _ in range(MAX_ROUNDS):
-        edited = search.replay(search.edits(repaired.candidate))
-        if repaired.mismatch < CONTRADICTED or not edited or edited[0].cost >= repaired.cost:
-            break
-        repaired = edited[0]
-    # slips are believed only where they explain most of what differs
-    if 2 * repaired.mismatch <= best.mismatch:
-        best = repaired
+        repaired = search.improve(best, options + search.slips(best))
+        # slips are believed only where they explain most of what differs
+        if 2 * repaired.mismatch <= best.mismatch:
+            best = repaired
     return search.replace(best) or [best], []
 
 
@@ -162,34 +142,16 @@ def _options(
         reply = given_text
         texts[entry[1]] = 0.0
     options: list[Option] = []
-    for text, cost in sorted(texts.items(), key=lambda item: item[1])[:MAX_OPTIONS]:
-        is_typed = entry is not None and entry[1] == text
-        for entry_text in (reply,) if is_typed else program.spellings(name, text)[:1]:
-            options.append(Option(text, entry_text, cost))
+    for text, cost in sorted(texts.items(), key=lambda item: item[1]):
+        entries = [reply] if entry and entry[1] == text else program.spellings(name, text)
+        if name == "MUP" and entries:  # -10 printed of a typed 10 is no pivot
+            entries = [*entries, opposite(entries[0])]
+        options += [Option(name, text, typed, cost + PASSED * k) for k, typed in enumerate(entries)]
     return options
 
 
-def _combinations(
-    columns: Mapping[str, Sequence[Option]], ms: Sequence[tuple[str, float]], count: int
-) -> list[Candidate]:
-    """Return the cheapest combinations of options."""
-    ways: list[tuple[float, str, list[Option]]] = [(cost, m, []) for m, cost in ms]
-    for options in columns.values():
-        longer = ((cost + o.cost, m, [*way, o]) for cost, m, way in ways for o in options)
-        ways = sorted(longer, key=lambda way: way[0])[:count]
-    return [
-        Candidate(
-            {name: option.printed for name, option in zip(columns, way, strict=True)},
-            {name: option.typed for name, option in zip(columns, way, strict=True)},
-            m,
-            cost,
-        )
-        for cost, m, way in ways
-    ]
-
-
 class _Search:
-    """Replay of candidates for the scene of a page.
+    """Replay of changes in the scene of a page.
 
     Parameters
     ----------
@@ -203,142 +165,184 @@ class _Search:
 
     def __init__(self, reading: Reading, given: Mapping[str, str], program: Listing) -> None:
         self.program = program
-        self.read = [n for n in INPUTS if n in reading.slots or scene_name(n) not in given]
+        self.reading = reading
+        slots = reading.slots
         names = RESULTS if type(program) is Listing else [n for n in NAMES if n != "MUP"]
         self.expected = {name: reading.readings(name) for name in names}
-        self.is_machine_read = reading.is_machine_read
-        self.sure = [n for n in names if n in reading.slots and reading.slots[n].is_clean]
-        self.read_texts = {
-            name: reading.slots[name].text if name in reading.slots else "" for name in INPUTS
-        }
+        self.sure = [name for name in names if name in slots and slots[name].is_clean]
+        self.read = [n for n in INPUTS if n in slots or scene_name(n) not in given]
         self.clean = [
             name
             for name in self.read
-            if (reading.slots[name].is_clean if name in reading.slots else name in reading.replies)
+            if (slots[name].is_clean if name in slots else name in reading.replies)
         ]
 
-    def edits(self, candidate: Candidate) -> list[Candidate]:
-        """Return a scene with one input typed otherwise that prints alike, or with one slip in an
-        input: in one read cleanly only where a machine read the page."""
-        edits = []
+    def slips(self, scene: Recovered) -> list[Option]:
+        """Return the slips that a page may have: in an input read cleanly only where a machine
+        read it."""
+        options = []
         for name in self.read:
-            text, entry = candidate.printed[name], candidate.typed[name]
-            texts = [*self.program.spellings(name, text)]
-            if name == "MUP":  # -10 printed of a typed 10 is no pivot
-                texts.append(opposite(entry))
-            for rank, spelling in enumerate(texts):
-                cost = candidate.cost + PASSED * (1 + rank / 9)
-                edits.append(
-                    candidate._replace(typed={**candidate.typed, name: spelling}, cost=cost)
-                )
+            slot = self.reading.slots.get(name)
             is_clean = name in self.clean
-            if self.is_machine_read or not is_clean:
-                for slip, cost in chain(slips(text), slips(self.read_texts[name])):
-                    doubt = cost + CONTRADICTED * (is_clean and slip != self.read_texts[name])
-                    edit = _with(candidate, name, slip)
-                    edits.append(edit._replace(cost=candidate.cost + doubt, replaced=""))
-        return edits
+            if self.reading.is_machine_read or not is_clean:
+                for text in (scene.inputs[name].printed, slot.text if slot else ""):
+                    options += _edits(scene.inputs[name], text, CONTRADICTED * is_clean)
+        return options
+
+    def improve(self, scene: Recovered, options: list[Option]) -> Recovered:
+        """Return a scene after the changes of one input that make it cheapest, one by one."""
+        while scene.mismatch >= CONTRADICTED and options:
+            best = self.replay(scene.inputs, options)[0]
+            if best.cost >= scene.cost:
+                break
+            scene = best
+        return scene
 
     def replace(self, scene: Recovered) -> list[Recovered]:
         """Return the scenes in which another value of one clean input explains all results.
 
-        A single result that differs is not explained so. Each place of a value is found in turn,
-        beginning before its first digit; of those that explain as much, the one with the fewest
-        decimal places counts. Of two angles that enter only as a sum, either explains as much.
+        A single result that differs is not explained so. A slip in what was read explains first,
+        then a value that is not longer, then one that a line cut at its end has the beginning of.
+        Of two angles that enter only as a sum, either explains as much.
         """
-        base = scene.candidate
-        values = {name: Decimal(base.printed[name]) for name in self.clean}
-        if not values or self._count_differing(scene) < MIN_RESULTS:
+        if self._count_differing(scene) < MIN_RESULTS:
             return []
-        edits: list[Candidate] = []
-        for place in PLACES:
-            edits = []
-            for name, value in values.items():
-                unit = Decimal(1).scaleb(Decimal(base.printed[name]).adjusted() + place)
-                limit = unit * 10**9
-                if name in ANGLES:
-                    unit, limit = min(unit, DEGREES), max(HALF_TURN, abs(value))
-                for origin in (value, Decimal(base.printed[name])):
-                    for step in STEPS:
-                        text = _text_of(max(-limit, min(limit, origin + step * unit)))
-                        edits.append(_with(base, name, text))
-            costs = self._run(edits)[1].reshape(len(values), -1)
-            best = costs.argmin(axis=1) + np.arange(len(values)) * costs.shape[1]
-            edits = [edits[k] for k in best.tolist()]
-            values = {edit.replaced: Decimal(edit.printed[edit.replaced]) for edit in edits}
-        for name, partner in PARTNERS.items():
-            if {name, partner} <= values.keys():
-                total = values[name] + Decimal(base.printed[partner])
-                edit = _with(base, partner, _text_of(total - Decimal(base.printed[name])))
-                edits.append(edit._replace(cost=base.cost))
-        scenes = [s for s in self.replay(edits, len(edits)) if not self._count_differing(s)]
-        scenes = [s for s in scenes if s.cost <= scenes[0].cost + RESPELLED]
-        return [*{s.candidate.replaced: s for s in scenes[::-1]}.values()][::-1]
+        texts = {name: scene.inputs[name].printed for name in self.clean}
+        edits = [edit for n, text in texts.items() for edit in _edits(scene.inputs[n], text)]
+        if scenes := self._explain(scene, edits):
+            return scenes
+        read = {name: Decimal(text) for name, text in texts.items()}
+        ends = [name for name in read if self.reading.ends_line(name)]
+        longer = {name: [read[name].scaleb(k) for k in range(MAX_DIGITS)] for name in ends}
+        options = self._vary(scene, read, 0)
+        options += self._vary(scene, self._find_least(scene, longer), MAX_DIGITS)
+        is_typable = [
+            len(option.printed) <= len(texts[option.name])
+            or option.printed.startswith(texts[option.name])
+            for option in options
+        ]
+        return self._explain(scene, [*compress(options, is_typable)])
+
+    def _vary(self, scene: Recovered, values: dict[str, Decimal], digits: int) -> list[Option]:
+        """Return the values of some inputs by which the results cost least.
+
+        Each place is found in turn, from that of the first digit to that of the last, or until
+        there are as many digits.
+        """
+        places = {}
+        for name, value in values.items():
+            first, last = value.adjusted(), int(value.as_tuple().exponent)
+            first = min(first, TENS) if name in ANGLES else first
+            places[name] = range(min(last, first - digits + 1), first + 1)
+        for place in range(MAX_DIGITS, -2 * MAX_DIGITS, -1):
+            unit = Decimal(1).scaleb(place)
+            varied = {
+                name: [value + step * unit for step in STEPS]
+                for name, value in values.items()
+                if place in places[name]
+            }
+            values = values | self._find_least(scene, varied)
+        return [_option(name, value) for name, value in values.items()]
+
+    def _find_least(
+        self, scene: Recovered, values: Mapping[str, Sequence[Decimal]]
+    ) -> dict[str, Decimal]:
+        """Return the value of each input by which the results cost least, the first of equals."""
+        changes = [_option(name, value) for name, column in values.items() for value in column]
+        if not changes:
+            return {}
+        order = np.argsort(self._run(scene.inputs, changes)[1], kind="stable")[::-1].tolist()
+        return {changes[k].name: Decimal(changes[k].printed) for k in order}  # the least last
+
+    def _explain(self, scene: Recovered, options: list[Option]) -> list[Recovered]:
+        """Return the scenes with one of some changes that explain all results, by input."""
+        base = {name: Decimal(scene.inputs[name].printed) for name in self.clean}
+        scenes = self.replay(scene.inputs, options, len(INPUTS)) if options else []
+        scenes = [other for other in scenes if not self._count_differing(other)]
+        partners = [
+            _option(partner, base[partner] + Decimal(option.printed) - base[option.name])
+            for option in (other.inputs[other.changed] for other in scenes)
+            if (partner := PARTNERS.get(option.name, "")) in base
+        ]
+        if partners:
+            others = self.replay(scene.inputs, partners, len(partners))
+            scenes += [other for other in others if not self._count_differing(other)]
+        scenes.sort(key=lambda other: other.cost)
+        by_input: dict[str, Recovered] = {}
+        for other in scenes:
+            if other.cost <= scenes[0].cost + RESPELLED:
+                by_input.setdefault(other.changed, other)
+        return [*by_input.values()]
 
     def _count_differing(self, scene: Recovered) -> int:
         """Return the number of results read cleanly that a scene does not explain."""
-        mup = scene.candidate.printed["MUP"]
+        mup = scene.inputs["MUP"].printed
         count = sum(scene.fields.get(name, "") not in self.expected[name] for name in self.sure)
         return count + (scene.fields.get("MUP", mup) != mup)
 
-    def replay(self, candidates: list[Candidate], count: int = 1) -> list[Recovered]:
-        """Return the best candidates, replayed, the cheapest first."""
-        run, mismatch = self._run(candidates)
-        total = mismatch + np.array([candidate.cost for candidate in candidates])
-        return [
-            _scene_of(candidates[k], float(mismatch[k]), run, k)
-            for k in np.argsort(total, kind="stable")[:count].tolist()
-        ]
+    def replay(
+        self, inputs: Mapping[str, Option], changes: list[Option], count: int = 1
+    ) -> list[Recovered]:
+        """Return the scenes that inputs have with each of some changes, the cheapest first."""
+        run, mismatch, mus = self._run(inputs, changes)
+        costs = mismatch + [change.cost - inputs[change.name].cost for change in changes]
+        scenes = []
+        for k in np.argsort(costs, kind="stable")[:count].tolist():
+            changed = {**inputs, changes[k].name: changes[k]}
+            changed["MUP"] = changed["MUP"]._replace(typed=mus[k])
+            scenes.append(
+                Recovered(
+                    changed, float(mismatch[k]), run.texts(k), str(run.endings[k]), changes[k].name
+                )
+            )
+        return scenes
 
-    def _run(self, candidates: list[Candidate]) -> tuple[Outcomes, NDArray[np.float64]]:
-        """Return what the program prints for candidates, and the cost of their results.
+    def _run(
+        self, inputs: Mapping[str, Option], changes: list[Option]
+    ) -> tuple[Outcomes, NDArray[np.float64], list[str]]:
+        """Return what the program prints with each of some changes, the cost of the results, and
+        the typed MU.
 
         Line 400 may turn the sign of MU: where another is printed than was read, it is typed
         the other way.
         """
-        run = self.program.run(_columns(candidates))
+        columns = {name: [option.typed] * len(changes) for name, option in inputs.items()}
+        read = np.array([inputs["MUP"].printed.encode()] * len(changes), TEXT)
+        for k, change in enumerate(changes):
+            columns[change.name][k] = change.typed
+            if change.name == "MUP":
+                read[k] = change.printed.encode()
+        run = self.program.run({scene_name(name): texts for name, texts in columns.items()})
         mup = run.printed("MUP")
-        read = np.array([candidate.printed["MUP"] for candidate in candidates], mup.dtype)
+        mus = columns["MUP"]
         rows = np.flatnonzero((mup != read) & (read != b"0") & (mup != b"")).tolist()
-        for k in rows:
-            entries = candidates[k].typed
-            entries = {**entries, "MUP": opposite(entries["MUP"])}
-            candidates[k] = candidates[k]._replace(typed=entries)
         if rows:
-            outcomes = self.program.run(_columns([candidates[k] for k in rows]))
-            run.fields[rows], run.endings[rows] = outcomes
-        mup = run.printed("MUP")
+            for k in rows:
+                mus[k] = opposite(mus[k])
+            turned = {scene_name(name): [texts[k] for k in rows] for name, texts in columns.items()}
+            run.fields[rows], run.endings[rows] = self.program.run(turned)
+            mup = run.printed("MUP")
         mismatch = CONTRADICTED * ((mup != read) & (mup != b""))
         for name, costs in self.expected.items():
             mismatch += _result_costs(run.printed(name), costs)
-        return run, mismatch
+        return run, mismatch, mus
 
 
-def _with(candidate: Candidate, name: str, text: str) -> Candidate:
-    """Return a candidate with another text of an input."""
-    change = {name: text}
-    numbers, entries = candidate.printed | change, candidate.typed | change
-    places = _count_places(text) - _count_places(candidate.printed[name])
-    return Candidate(numbers, entries, candidate.M, candidate.cost + ALIKE * max(places, 0), name)
+def _option(name: str, value: Decimal) -> Option:
+    """Return a value of an input as the program prints it."""
+    entry = stored_and_printed(f"{value.normalize():f}")
+    text = entry[1] if entry else "0"
+    return Option(name, text, text, WRONG)
 
 
-def _count_places(text: str) -> int:
-    """Return the number of decimal places of a number."""
-    return -int(Decimal(text).normalize().as_tuple().exponent)
-
-
-def _text_of(value: Decimal) -> str:
-    """Return a value as the program prints it."""
-    entry = stored_and_printed(f"{value:f}")
-    return entry[1] if entry else "0"
-
-
-def _columns(candidates: Sequence[Candidate]) -> dict[str, list[str]]:
-    """Return the scenes of candidates as columns."""
-    columns = {
-        scene_name(name): [candidate.typed[name] for candidate in candidates] for name in INPUTS
-    }
-    return {**columns, "M": [candidate.M for candidate in candidates]}
+def _edits(option: Option, read: str, doubt: float = 0.0) -> list[Option]:
+    """Return the slips in what was read of an input, of angles those within the circle."""
+    limit = max(CIRCLE, abs(Decimal(option.printed))) if option.name in ANGLES else math.inf
+    return [
+        Option(option.name, text, text, cost + doubt)
+        for text, cost in slips(read)
+        if abs(Decimal(text)) <= limit
+    ]
 
 
 def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> NDArray[np.float64]:
@@ -355,12 +359,6 @@ def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> ND
     for text, cost in costs.items():
         total[printed == text.encode()] = cost
     return total
-
-
-def _scene_of(candidate: Candidate, mismatch: float, run: Outcomes, k: int) -> Recovered:
-    """Return a candidate with what the program prints for it."""
-    scene = {scene_name(name): text for name, text in candidate.typed.items()} | {"M": candidate.M}
-    return Recovered(candidate, mismatch, scene, run.texts(k), str(run.endings[k]))
 
 
 def printed_fields(scene: Mapping[str, str]) -> Texts:

@@ -30,7 +30,7 @@ from .page import (
     printed_rows,
 )
 from .programs import Listing
-from .reader import Reading, Slot, read_printouts
+from .reader import Reading, read_printouts
 from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
 CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
@@ -81,9 +81,9 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
         return _without_scene(reading, missing)
     best, *alternatives = scenes
     findings, comparison = _compare(reading, best, given, program)
-    names = {scene.candidate.replaced for scene in scenes}
+    names = {scene.changed for scene in scenes}
     for other in alternatives:
-        name = other.candidate.replaced
+        name = other.changed
         findings += [
             finding
             for finding in _compare(reading, other, given, program)[0]
@@ -279,20 +279,19 @@ class Comparison:
         if text == read or text in readings(read):
             return Kind.DOUBT
         if slot.is_clean:
-            is_end = slot.is_bounded and not self._is_cut(slot, text)
+            is_end = slot.is_bounded and not self._is_cut(name, text)
             return Kind.NUMBER if is_end else Kind.UNREAD
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
-    def _is_cut(self, slot: Slot, printed: str) -> bool:
+    def _is_cut(self, name: str, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line, or its end behind 0."""
-        if CUT_NUMBER.match(slot.text) and printed.endswith(slot.text.lstrip("-")):
+        read = self.reading.slots[name].text
+        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
             return True
-        behind = self.reading.text[slot.glyphs[-1].offset + 1 :]
-        numbers = [printed]
-        if printed and slot is self.reading.slots.get("GA"):
-            numbers += [f"{Decimal(printed) + turn:f}" for turn in HALF_TURNS]
-        is_beginning = any(number.startswith(slot.text) for number in numbers)
-        return is_beginning and bool(re.match(r"[^\S\n]*(\r?\n|$)", behind))
+        turns = HALF_TURNS if printed and name == "GA" else ()
+        numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
+        is_beginning = any(number.startswith(read) for number in numbers)
+        return is_beginning and self.reading.ends_line(name)
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
