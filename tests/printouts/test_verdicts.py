@@ -329,6 +329,11 @@ def test_a_row_lost_or_twice_is_named(start: str) -> None:
     assert single(with_row(start, row(start), other)).verdict is Verdict.DIFFERS
 
 
+def test_full_width_digits_are_not_the_programs() -> None:
+    for old, new in (("3.449", "3.４49"), ("57.47", "５７.４７")):
+        assert single(BODY.replace(old, new)).verdict in (Verdict.INCOMPLETE, Verdict.AS_READ)
+
+
 def test_rows_in_each_others_place_are_named() -> None:
     text = with_row("DA=", row("UX=")).replace(row("UX="), "#", 2)
     text = text.replace("#", row("UX="), 1).replace("#", row("DA="))

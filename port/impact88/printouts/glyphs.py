@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -115,9 +114,6 @@ def plain_char(char: str) -> str:
     """Return a character in capitals as the program prints it, "" for one without width."""
     if char in INVISIBLE:
         return ""
-    form, _, code = unicodedata.decomposition(char).partition(" ")
-    if form in ("<wide>", "<narrow>", "<font>"):
-        char = chr(int(code, 16))
     capital = DASHES.get(char) or char.upper()
     return capital if len(capital) == 1 else char
 

@@ -132,15 +132,11 @@ def _options(
 ) -> list[Option]:
     """Return what an input may be, the cheapest first: as printed, and as typed at the prompt."""
     texts = dict(reading.readings(name))
-    reply = reading.replies.get(name, "")
-    entry = stored_and_printed(reply) if TYPED.fullmatch(reply) else None
+    reply = reading.replies.get(name, "") or ("" if texts else given.get(scene_name(name), ""))
+    entry = stored_and_printed(reply, name in ANGLES) if TYPED.fullmatch(reply) else None
     doubt = ALIKE + LOST * (name in reading.slots)
     for text in [entry[1]] if entry else readings(reply):
         texts[text] = min(texts.get(text, doubt), doubt)
-    given_text = given.get(scene_name(name), "")
-    if given_text and not texts and (entry := stored_and_printed(given_text, name in ANGLES)):
-        reply = given_text
-        texts[entry[1]] = 0.0
     options: list[Option] = []
     for text, cost in sorted(texts.items(), key=lambda item: item[1]):
         entries = [reply] if entry and entry[1] == text else program.spellings(name, text)
@@ -382,14 +378,15 @@ def unseen_digits(recovered: Recovered, program: Listing) -> dict[str, int]:
         Digits of which another one leaves all results as they are, by input; none are left out.
     """
     names: list[str] = []
-    scenes: list[Texts] = []
+    columns: dict[str, list[str]] = {name: [] for name in recovered.scene}
     for name in map(scene_name, INPUTS):
         text = recovered.scene[name]
         for k, char in enumerate(text.partition("E")[0]):
             if char.isdigit():
                 other = text[:k] + str((int(char) + 1) % 10) + text[k + 1 :]
                 names.append(name)
-                scenes.append({**recovered.scene, name: other})
-    run = program.run({name: [scene[name] for scene in scenes] for name in recovered.scene})
+                for key, typed in {**recovered.scene, name: other}.items():
+                    columns[key].append(typed)
+    run = program.run(columns)
     same = np.all([run.printed(n) == recovered.fields.get(n, "").encode() for n in RESULTS], axis=0)
-    return dict(Counter(name for name, is_same in zip(names, same, strict=True) if is_same))
+    return dict(Counter(compress(names, same)))

@@ -79,25 +79,10 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
     scenes, missing = find_scenes(reading, given, program)
     if not scenes:
         return _without_scene(reading, missing)
-    best, *alternatives = scenes
+    best = scenes[0]
     findings, comparison = _compare(reading, best, given, program)
-    names = {scene.changed for scene in scenes}
-    for other in alternatives:
-        name = other.changed
-        findings += [
-            finding
-            for finding in _compare(reading, other, given, program)[0]
-            if finding.name == name
-        ]
-    if alternatives:
-        is_cut = any(finding.kind is Kind.UNREAD for finding in findings if finding.name in names)
-        kind = Kind.OPEN if is_cut else Kind.EITHER
-        findings = [
-            finding._replace(kind=kind)
-            if finding.kind is Kind.NUMBER and finding.name in names
-            else finding
-            for finding in findings
-        ]
+    if len(scenes) > 1:
+        findings = _either(findings, comparison, scenes)
     verification = Verification(
         verdict_of(findings),
         best.scene,
@@ -113,6 +98,22 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
     from .explain import explain  # runs the port, which other verdicts do not need
 
     return replace(verification, explanation=explain(verification))
+
+
+def _either(
+    findings: Sequence[Finding], comparison: Comparison, scenes: Sequence[Recovered]
+) -> list[Finding]:
+    """Return the findings with the inputs of scenes, each of which alone explains the page: as one
+    of several if they were read cleanly and to their ends, else as open."""
+    printed = {scene.changed: scene.fields[scene.changed] for scene in scenes}
+    others = [finding for finding in findings if finding.name not in printed]
+    is_sure = any(f.kind is Kind.NUMBER for f in findings if f not in others)
+    is_sure &= not any(comparison.is_cut(name, text) for name, text in printed.items())
+    kind = Kind.EITHER if is_sure else Kind.OPEN
+    return others + [
+        comparison.number_finding(kind, name)._replace(printed=text)
+        for name, text in printed.items()
+    ]
 
 
 def _compare(
@@ -279,11 +280,11 @@ class Comparison:
         if text == read or text in readings(read):
             return Kind.DOUBT
         if slot.is_clean:
-            is_end = slot.is_bounded and not self._is_cut(name, text)
+            is_end = slot.is_bounded and not self.is_cut(name, text)
             return Kind.NUMBER if is_end else Kind.UNREAD
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
-    def _is_cut(self, name: str, printed: str) -> bool:
+    def is_cut(self, name: str, printed: str) -> bool:
         """Return True for the beginning of a number at the end of its line, or its end behind 0."""
         read = self.reading.slots[name].text
         if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
@@ -381,18 +382,18 @@ class Comparison:
         is_exact = all(f in words or (f.read == f.printed and f.name in names) for f in findings)
         if is_exact and all(map(_is_other_word, words)):
             findings = [f._replace(kind=Kind.LABEL) if f in words else f for f in findings]
-        if self.reading.is_machine_read:
+        is_machine_read = self.reading.is_machine_read
+        if is_machine_read:
             findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         foreign = "".join(finding.read for finding in findings if finding.kind is Kind.FOREIGN)
-        is_unsure = self.reading.is_machine_read or any(map(_is_unsure, findings))
+        is_unsure = is_machine_read or any(map(_is_unsure, findings))
         is_unsure |= sum(map(str.isdigit, foreign)) >= MAX_FOREIGN_DIGITS
         is_open = is_unsure and len(numbers) + len(unread) > MAX_ALTERED
         is_open |= any(finding.name in INPUTS for finding in unread)
-        if self.reading.is_machine_read:
-            swaps = [swap for finding in [*numbers, *unread] if (swap := _swap(finding))]
-            is_open |= len({*swaps}) < len(swaps) or not all(map(_swap, numbers))
+        swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
+        is_open |= is_machine_read and ("" in swaps or len({*swaps}) < len(swaps))
         return [f._replace(kind=Kind.OPEN) if is_open and f in numbers else f for f in findings]
 
 
@@ -408,11 +409,13 @@ def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
 def _is_other_word(finding: Finding) -> bool:
     """Return True for another word than a label's, not one that lost letters or was misread."""
     read, printed = finding.read.upper(), finding.printed
-    blocks = SequenceMatcher(None, read, printed).get_matching_blocks()
-    count = max(len(read), len(printed)) - sum(block.size for block in blocks)
     if len(read) == len(printed):
-        count = sum(b not in a + LOOKALIKES.get(a, "") for a, b in zip(printed, read, strict=True))
-    return count >= MIN_LETTERS and read.isalpha() and sum(b.size for b in blocks) < len(read)
+        pairs = zip(printed, read, strict=True)
+        read = "".join(a if b in LOOKALIKES.get(a, "") else b for a, b in pairs)
+    same = _count_same(read, printed)
+    return (
+        max(len(read), len(printed)) - same >= MIN_LETTERS and read.isalpha() and same < len(read)
+    )
 
 
 def _is_unsure(finding: Finding) -> bool:
@@ -424,9 +427,13 @@ def _is_unsure(finding: Finding) -> bool:
 
 def _is_alike(read: str, printed: str) -> bool:
     """Return True if at least half of a number's characters were read, in order."""
-    matchers = [SequenceMatcher(None, text, printed) for text in (read, *readings(read))]
-    counts = [sum(block.size for block in m.get_matching_blocks()) for m in matchers]
-    return 2 * max(counts) >= len(printed)
+    return 2 * max(_count_same(text, printed) for text in (read, *readings(read))) >= len(printed)
+
+
+def _count_same(read: str, printed: str) -> int:
+    """Return how many characters two texts have in common, in order."""
+    blocks = SequenceMatcher(None, read, printed).get_matching_blocks()
+    return sum(block.size for block in blocks)
 
 
 def _is_slight(finding: Finding) -> bool:
