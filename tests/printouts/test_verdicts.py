@@ -143,6 +143,8 @@ SAMPLES = {k: impact88.run(impact88.sample(k)).page for k in (1, 2, 3)}
         (2, "MB= 95.8", "MB= 98.5"),
         (2, "MA= 143.5", "MA= 455.1"),
         (3, "EM= -.9", "EM= -.2"),
+        (1, "VY= 25.15", "VY= 20.00"),
+        (1, "IB= 1961", "IB= -1961"),
     ],
 )
 def test_an_input_that_explains_everything_is_named_alone(number: int, old: str, new: str) -> None:

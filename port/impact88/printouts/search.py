@@ -178,12 +178,21 @@ class _Search:
         read it."""
         options = []
         for name in self.read:
-            slot = self.reading.slots.get(name)
             is_clean = name in self.clean
             if self.reading.is_machine_read or not is_clean:
-                for text in (scene.inputs[name].printed, slot.text if slot else ""):
-                    options += _edits(scene.inputs[name], text, CONTRADICTED * is_clean)
+                options += self._edits(scene.inputs[name], CONTRADICTED * is_clean)
         return options
+
+    def _edits(self, option: Option, doubt: float = 0.0) -> list[Option]:
+        """Return the slips in an input as believed and as read, of angles those in the circle."""
+        slot = self.reading.slots.get(option.name)
+        limit = max(CIRCLE, abs(Decimal(option.printed))) if option.name in ANGLES else math.inf
+        return [
+            Option(option.name, text, text, cost + doubt)
+            for read in dict.fromkeys((option.printed, slot.text if slot else ""))
+            for text, cost in slips(read)
+            if abs(Decimal(text)) <= limit
+        ]
 
     def improve(self, scene: Recovered, options: list[Option]) -> Recovered:
         """Return a scene after the changes of one input that make it cheapest, one by one."""
@@ -203,10 +212,10 @@ class _Search:
         """
         if self._count_differing(scene) < MIN_RESULTS:
             return []
-        texts = {name: scene.inputs[name].printed for name in self.clean}
-        edits = [edit for n, text in texts.items() for edit in _edits(scene.inputs[n], text)]
+        edits = [edit for name in self.clean for edit in self._edits(scene.inputs[name])]
         if scenes := self._explain(scene, edits):
             return scenes
+        texts = {name: scene.inputs[name].printed for name in self.clean}
         read = {name: Decimal(text) for name, text in texts.items()}
         ends = [name for name in read if self.reading.ends_line(name)]
         longer = {name: [read[name].scaleb(k) for k in range(MAX_DIGITS)] for name in ends}
@@ -329,16 +338,6 @@ def _option(name: str, value: Decimal) -> Option:
     entry = stored_and_printed(f"{value.normalize():f}")
     text = entry[1] if entry else "0"
     return Option(name, text, text, WRONG)
-
-
-def _edits(option: Option, read: str, doubt: float = 0.0) -> list[Option]:
-    """Return the slips in what was read of an input, of angles those within the circle."""
-    limit = max(CIRCLE, abs(Decimal(option.printed))) if option.name in ANGLES else math.inf
-    return [
-        Option(option.name, text, text, cost + doubt)
-        for text, cost in slips(read)
-        if abs(Decimal(text)) <= limit
-    ]
 
 
 def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> NDArray[np.float64]:
