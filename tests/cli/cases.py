@@ -36,20 +36,9 @@ E = 0.2
 TA = "course"
 TB = "course"
 """
-RECORDER = """\
-units = "us"
-M = 4
-MA = "950 kg"
-MB = "770 kg"
-SA = "5.5 +- .2"
-SA_source = "event data recorder"
-HA = 0
-SB = 0
-DVA = "3.1 +- .3"
-DVB = "3.5 +- .3"
-TA = "course"
-TB = "course"
-"""
+MEASURED_SPEED = 'SA = "5.5 +- .2"\nSA_source = "event data recorder"'
+RECORDER = REAR_END.replace("SA = 5.5", MEASURED_SPEED)
+RECORDER = RECORDER.replace("E = 0.2", 'DVA = "3.1 +- .3"\nDVB = "3.5 +- .3"')
 INTERSECTION = """\
 units = "metric"
 M = 4
@@ -64,19 +53,7 @@ HBF = -30
 TA = "course"
 TB = "course"
 """
-IMPOSSIBLE = """\
-units = "us"
-M = 4
-MA = 3000
-MB = 3000
-SA = 10
-HA = 0
-SB = 0
-SBF = 30
-HBF = 0
-TA = "course"
-TB = "course"
-"""
+IMPOSSIBLE = REAR_END.replace("E = 0.2", "SBF = 30\nHBF = 0")
 FILES = {
     "crash.toml": CRASH,
     "rear.toml": REAR_END,

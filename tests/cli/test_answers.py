@@ -57,12 +57,26 @@ def test_what_contradicts_physics_is_not_possible() -> None:
     assert "NO IMPACT" in answer.warnings[0]
 
 
+def test_values_that_contradict_one_another_have_no_results() -> None:
+    answer = ask(Case.loads(RECORDER).with_(DVB="6 +- .3"), ["DVA"])
+    assert (answer.possible, answer.found, answer.scene) == (False, {}, {})
+    assert "DVB 6 mph given" in answer.evidence
+
+
+def test_a_result_of_a_reconstruction_is_given_or_refused() -> None:
+    assert ask(Case.loads(REAR_END), ["COND"]).found["COND"].text == "3.000"
+    answer = ask(Case.loads(INTERSECTION), ["SA", "COND"])  # the contact plane is not known
+    assert any(remark.startswith("COND left out") for remark in answer.remarks)
+    with pytest.raises(impact88.UserError, match="COND: not defined for this impact"):
+        ask(Case.loads(INTERSECTION), ["COND"])
+
+
 def test_exact_entries_are_given_not_found() -> None:
     answer = ask(Case.loads(REAR_END))
     assert "SA" not in answer.found
     assert {"SA", "MA"} <= {entry.name for entry in answer.given}
     assert next(entry for entry in answer.given if entry.name == "MA").text == "950 kg"
-    assert "SA" in ask(Case.loads(REAR_END), full=True).found
+    assert "SA" in ask(Case.loads(REAR_END), ALL).found
 
 
 def test_tolerances_are_checked_against_each_other() -> None:
@@ -87,7 +101,7 @@ def test_another_number_of_equations_is_named(text: str) -> None:
 
 def test_no_number_found_is_nan() -> None:
     for text in (CRASH, REAR_END, RECORDER, INTERSECTION):
-        answer = ask(Case.loads(text), full=True)
+        answer = ask(Case.loads(text), ALL)
         numbers = answer.found.values()
         assert all(math.isfinite(n.value) if n.ends is None else n.interval for n in numbers)
 
@@ -120,7 +134,7 @@ def test_one_rule_of_rounding(value: float, width: float, text: str) -> None:
 @pytest.mark.parametrize("name", ["crash.toml", "rear.toml", "recorder.toml", "intersection.toml"])
 def test_a_number_has_the_same_digits_everywhere(name: str, tmp_path: Path) -> None:
     (tmp_path / name).write_text(FILES[name], "utf-8")
-    answer = ask(Case.load(str(tmp_path / name)), full=True)
+    answer = ask(Case.load(str(tmp_path / name)), ALL)
     assert set(answer.found) <= set(ALL)
     text = command("solve", name, "--full", folder=tmp_path).out
     record = json.loads(command("solve", name, "--full", "--json", folder=tmp_path).out)

@@ -16,7 +16,6 @@ import impact88
 from cases import FILES
 from impact88.cli import COMMANDS, GONE
 from impact88.cli.output import FORMS
-from impact88.comparison import selfcheck
 
 
 @pytest.fixture
@@ -94,28 +93,15 @@ def test_a_command_that_is_gone_says_what_to_use(name: str) -> None:
 
 @pytest.mark.parametrize(
     "line",
-    [
-        "run --sample 1 --json",
-        "solve rear.toml --json",
-        "verify printout.txt --json",
-        "chapter example --json",
-    ],
+    ["run --sample 1", "solve rear.toml", "verify printout.txt", "chapter example", "selfcheck"],
 )
-def test_json_has_a_version(line: str, folder: Path) -> None:
-    outcome = command(*line.split(), folder=folder)
+def test_json_has_a_version(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("impact88.comparison.selfcheck.checks", lambda: ())
+    outcome = command(*line.split(), "--json", folder=folder)
     record = json.loads(outcome.out)
     name, form, version = record["schema"].split("/")
     assert (name, FORMS[form]) == ("impact88", int(version))
     assert record["version"] == impact88.__version__
-
-
-def test_the_record_of_an_installation_has_a_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out the checks, which are run by tests/comparison/test_kit.py."""
-    monkeypatch.setattr(selfcheck, "checks", lambda: iter(()))
-    outcome = command("selfcheck", "--json")
-    record = json.loads(outcome.out)
-    assert record["schema"] == f"impact88/selfcheck/{FORMS['selfcheck']}"
-    assert outcome.status == 0
 
 
 @pytest.mark.parametrize(
@@ -240,16 +226,6 @@ def test_the_prompt_keeps_programs(folder: Path) -> None:
     assert "10 PRINT 2\n" in (folder / "new.bas").read_text()
 
 
-def process(*words: str, **options: object) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [sys.executable, "-m", "impact88", *words],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        **options,  # type: ignore[call-overload]
-    )
-
-
 def test_a_run_does_not_import_numpy() -> None:
     code = (
         "import sys; from impact88.cli.main import main; main(['run', '--sample', '1']); "
@@ -259,7 +235,12 @@ def test_a_run_does_not_import_numpy() -> None:
 
 
 def test_a_broken_pipe_is_no_traceback() -> None:
-    shell_run = process("solve", "--sample", "1", "--sweep", "MU=0:1:50000")
+    shell_run = subprocess.Popen(
+        [sys.executable, "-m", "impact88", *"solve --sample 1 --sweep MU=0:1:50000".split()],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     assert shell_run.stdout is not None
     shell_run.stdout.readline()
     shell_run.stdout.close()

@@ -18,6 +18,7 @@ from commands import command, shell
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "port" / "docs" / "guide").glob("*.md"))]
 FILE = re.compile(r"`([\w.-]+)`:\n\n```(?:toml|csv)\n(.*?)^```$", re.M | re.S)
+LONG_PAGES = ("programs.md",)  # tests/comparison compares shorter tables
 SHELL_WORDS = {"|", "<", ">", "&&", ";"}
 
 
@@ -43,7 +44,14 @@ def page_name(page: Path) -> str:
     return page.name
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if blocks(p, "console")], ids=page_name)
+CONSOLE_PAGES = [
+    pytest.param(page, marks=[pytest.mark.long] * (page.name in LONG_PAGES), id=page.name)
+    for page in PAGES
+    if blocks(page, "console")
+]
+
+
+@pytest.mark.parametrize("page", CONSOLE_PAGES)
 def test_console_examples_print_what_is_shown(page: Path, tmp_path: Path) -> None:
     for folder in ("legacy", "golden"):
         (tmp_path / folder).symlink_to(ROOT / folder)

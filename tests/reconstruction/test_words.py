@@ -61,7 +61,7 @@ def test_section_vii_in_words():
     assert "know VBX more closely: it makes 70 % of the variance of SA" in advice(result)
     assert "E 0 to 1 (the interval reaches 0 and 1)" in assumptions(result)
     assert [*result.drivers["UX"]] == ["VBX", "VAX"]
-    assert "1 impact; expected number not seen 0.0" in " ".join(remarks(result))
+    assert "1 impact; others that no start reached, by estimate: 0.0" in " ".join(remarks(result))
 
 
 def test_units_of_the_view():

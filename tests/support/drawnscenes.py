@@ -7,7 +7,7 @@ from html import unescape
 from typing import NamedTuple
 
 from impact88.cases import Case
-from impact88.report.paper import text_size
+from impact88.report.drawing import Label
 
 SIDE = {
     "units": "us",
@@ -95,6 +95,6 @@ def texts_of(svg: str) -> list[Placed]:
     for x, y, size, content in re.findall(pattern, svg):
         text = unescape(re.sub("<[^>]*>", "", content))
         left, top = float(x), float(y) - 0.78 * float(size)
-        right = left + text_size(text, float(size)).real
+        right = left + Label((text, "", ""), "", float(size)).box.real
         placed.append(Placed(text, left, top, right, top + float(size)))
     return placed

@@ -23,23 +23,22 @@ def answer_lines(answer: Answer) -> Iterator[str]:
     yield from paragraph(answer.question, "ASKED", LABEL)
     if answer.evidence:
         yield from paragraph(answer.evidence, "EVIDENCE", LABEL)
-    for number, impact in enumerate(impacts, 1):
-        if impact.found:
-            yield ""
-            if len(impacts) > 1:
-                yield f"IMPACT {number} OF {len(impacts)}"
-            yield from _result_lines(impact)
     yield ""
+    for number, impact in enumerate(impacts, 1):
+        if len(impacts) > 1:
+            yield f"IMPACT {number} OF {len(impacts)}"
+        if impact.found:
+            yield from table(_result_rows(impact), left=(0, 3, 4))
+            yield ""
     sections = [(name.upper(), LABEL, texts) for name, texts in answer.sections.items()]
     for label, width, texts in (*sections, ("!", 2, answer.warnings), ("-", 2, answer.remarks)):
         for text in texts:
             yield from paragraph(text, label, width)
 
 
-def _result_lines(answer: Answer) -> list[str]:
-    """Return the table of results."""
-    rows = [["", "value", "90 % interval" if answer.intervals else "", "unit", ""]]
+def _result_rows(answer: Answer) -> Iterator[list[str]]:
+    """Yield the rows of the table of results."""
+    yield ["", "value", "90 % interval" if answer.intervals else "", "unit", ""]
     for row in answer.found.values():
         note = f" ({row.note})" if row.note else ""
-        rows.append([row.name, row.text, row.interval, row.unit, row.meaning + note])
-    return table(rows, left=(0, 3, 4))
+        yield [row.name, row.text, row.interval, row.unit, row.meaning + note]

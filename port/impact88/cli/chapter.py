@@ -23,11 +23,10 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from .. import status
 from ..cases.case import Case
 from ..chapter.staged import collisions
 from ..errors import UserError
-from ..report.answers import Answer, ask, given_of, numbers_of
+from ..report.answers import Answer, ask, forward_answer
 from . import options
 from .answers import show_answer
 from .options import choice, flag, option
@@ -51,23 +50,6 @@ Values = Mapping[str, Any]
 """Values in base units by name."""
 
 
-def _answer(case: Case, question: str, results: Values, *remarks: str) -> Answer:
-    """Return results in base units as the answer to a case."""
-    values = {name: float(value) for name, value in results.items()}
-    bits = int(values.pop("STATUS", 0))
-    finite = {name: value for name, value in values.items() if isfinite(value)}
-    return Answer(
-        "forward",
-        question,
-        given_of(case),
-        numbers_of(case, finite),
-        case,
-        possible=not bits & status.IMPOSSIBLE,
-        remarks=(*case.remarks, *remarks),
-        warnings=tuple(status.sentences(bits)),
-    )
-
-
 def _colinear(case: Case, values: Values, like: str) -> Answer:
     """Return the impact of vehicles that do not turn, forward or backward."""
     from ..chapter.colinear import FINAL, INITIAL, colinear, colinear_inverse
@@ -77,7 +59,9 @@ def _colinear(case: Case, values: Values, like: str) -> Answer:
     solve, names = (colinear, INITIAL) if "UN" in values else (colinear_inverse, FINAL)
     if "MUP" not in values:  # nothing acts along t
         values = {**dict.fromkeys(("MUP", *names[1::2]), 0.0), **values}
-    return _answer(case, "a colinear impact, Equations 9 to 12", solve(values))
+    results = {name: float(x) for name, x in solve(values).items() if isfinite(x)}
+    bits = int(results.pop("STATUS"))
+    return forward_answer(case, "a colinear impact, Equations 9 to 12", results, bits)
 
 
 def _barrier(case: Case, values: Values, like: str) -> Answer:
@@ -105,8 +89,10 @@ def _equation_19(case: Case, values: Values) -> Answer:
     loss = values["LOSS"] if "LOSS" in values else loss_of_energy(values)
     if not 0 <= loss <= 100:
         raise UserError(f"a loss of {loss:.4g} percent; expected 0 to 100")
-    results = {"LOSS": loss, **delta_v({**values, "LOSS": loss})}
-    return _answer(case, "velocity changes from the energy lost", results, *EQUATION_19)
+    changes = delta_v({**values, "LOSS": loss})
+    results = {"LOSS": loss, **{name: float(x) for name, x in changes.items()}}
+    question = "velocity changes from the energy lost"
+    return forward_answer(case, question, results, remarks=EQUATION_19)
 
 
 def _collision_tables(args: options.Args) -> int:

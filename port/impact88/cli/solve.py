@@ -66,7 +66,7 @@ def main(args: Args) -> int:
     from .answers import show_answer
 
     names = names_of(args.results, ALL, "--results")
-    answer = ask(case_of(args), names, full=args.full)
+    answer = ask(case_of(args), ALL if args.full else names)
     with printing_to(args.target):
         return show_answer(answer, args.json)
 

@@ -30,6 +30,7 @@ from . import options
 from .options import flag, input_file, option
 from .output import show
 
+UNUSABLE = 2  # exit status
 HEADINGS = ("case", "examiner", "date")
 """Headings of the report, as options."""
 OPTIONS = (
@@ -58,16 +59,15 @@ def main(args: options.Args) -> int:
 
         scene = Case.load(args.scene).texts
     exhibits: list[Exhibit] = []
-    failure = None
+    is_unusable = False
     for path in (path for name in args.printouts for path in sorted(glob(name)) or [name]):
         try:
             exhibits += _verify_file(args, display_name(path), read_bytes(path), scene)
         except UserError as error:
-            if failure:
-                note("verify", str(failure))
-            failure = error
-    if failure:
-        raise failure
+            note("verify", str(error))
+            is_unusable = True
+    if is_unusable:
+        return UNUSABLE
     if args.report:
         from ..report.casepage import verification_page
 

@@ -207,8 +207,8 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
     lines = [text for text in result.remarks if text != OUTSIDE]
     if impacts and starts > 1:
         lines.append(
-            f"{starts} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected "
-            f"number not seen {unseen:.2g}"
+            f"{starts} random starts led to {impacts} impact{'s' * (impacts != 1)}; others that no "
+            f"start reached, by estimate: {unseen:.2g}"
         )
         if impacts > result.solutions > 0:
             lines.append(

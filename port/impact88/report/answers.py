@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -41,6 +41,8 @@ BACKWARD = tuple(
 COMPONENTS = "DVAF DVAR DVBF DVBR P RR0 EL DT CAX CAY CBX CBY".split()
 ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
+DRAWN = (*FINAL_VELOCITIES, *"SA SB SAF SBF DVA DVB P PDOFA PDOFB".split())
+"""Results that every drawing shows."""
 POINTS = "CAF CAL CBF CBL".split()
 UNUSABLE = (
     "no impact has these values; expected masses and inertias above 0, and at most one barrier "
@@ -145,7 +147,7 @@ class Answer:
         }
 
 
-def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int = 0) -> Answer:
+def ask(case: Case, wanted: Sequence[str] = ()) -> Answer:
     """Return the answer to a case: forward, bounds or reconstruction.
 
     Parameters
@@ -153,11 +155,7 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
     case : Case
         The case.
     wanted : sequence of str, optional
-        The results wanted; by default those most asked.
-    full : bool, default False
-        True for every result.
-    seed : int, default 0
-        Random seed.
+        The results wanted, such as `ALL`; by default those most asked.
 
     Returns
     -------
@@ -176,41 +174,63 @@ def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int
         raise UserError(message, case.place("M"))
     is_scene = {*case.entries} <= {*SCENE, *POINTS}
     if is_scene and not evaluate(case.numbers, FINAL_VELOCITIES[:4])[1]:
-        names = tuple(wanted) or (ALL if full else FORWARD)
-        if math.isinf(case.numbers["MB"]):  # a barrier
-            names = tuple(name for name in names if "B" not in name or name in wanted)
-        return _forward(case, names, seed)
-    exact = {*case.entries} - {*case.ranges}
-    names = tuple(wanted) or (ALL if full else tuple(n for n in BACKWARD if n not in exact))
-    return _reconstruct(case, names, seed)
+        return _forward(case, wanted)
+    return _reconstruct(case, wanted)
 
 
-def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
-    """Return the answer to a complete scene, with intervals where it has tolerances."""
-    values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS", "fit"))
+def _forward(case: Case, wanted: Sequence[str]) -> Answer:
+    """Return the answer to a complete scene, with 90 % intervals where it has tolerances."""
+    names = wanted or FORWARD
+    if math.isinf(case.numbers["MB"]) and not wanted:  # a barrier
+        names = [name for name in names if "B" not in name]
+    values, lacking = evaluate(case.numbers, (*names, *DRAWN, "STATUS", "fit"))
     numbers = {name: float(value) for name, value in values.items()}
     if numbers.pop("fit", 1.0) == 0:
         raise UserError(UNUSABLE, case.source)
     results = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
+    remarks = _left_out(case, names, results, lacking)
+    question = "velocities after the impact, from a complete scene"
+    answer = forward_answer(case, question, results, int(numbers["STATUS"]), remarks)
+    answer = replace(answer, scene={**case.numbers, **numbers})
+    return _with_bounds(answer, results) if case.ranges else answer
+
+
+def forward_answer(
+    case: Case,
+    question: str,
+    values: Mapping[str, float],
+    bits: int = 0,
+    remarks: Sequence[str] = (),
+) -> Answer:
+    """Return results in base units and their STATUS as the answer to a case."""
+    return Answer(
+        "forward",
+        question,
+        given_of(case),
+        numbers_of(case, values),
+        case,
+        possible=not bits & status.IMPOSSIBLE,
+        remarks=(*case.remarks, *remarks),
+        warnings=tuple(status.sentences(bits)),
+    )
+
+
+def _left_out(
+    case: Case,
+    names: Sequence[str],
+    results: Collection[str],
+    lacking: Mapping[str, Sequence[str]] = {},
+) -> list[str]:
+    """Return a remark on the results that cannot be given. Raises UserError if none can."""
     absent = [name for name in names if name not in results]
     inputs = dict.fromkeys(name for n in absent for name in lacking.get(n, ()))
-    reason = missing([*inputs]) if inputs else "not defined for this impact"
-    remarks = [f"{' '.join(absent)} left out: {reason}"] if absent else []
-    answer = Answer(
-        "forward",
-        "velocities after the impact, from a complete scene",
-        given_of(case),
-        numbers_of(case, results),
-        case,
-        possible=not int(numbers["STATUS"]) & status.IMPOSSIBLE,
-        remarks=(*case.remarks, *remarks),
-        warnings=tuple(status.sentences(int(numbers["STATUS"]))),
-        scene={**case.numbers, **numbers},
-    )
-    return _with_bounds(answer, results, seed) if case.ranges else answer
+    reason = missing([*inputs]) if inputs else "not defined for this impact, or left open"
+    if absent and not results:
+        raise UserError(f"{' '.join(absent)}: {reason}; expected other --results", case.source)
+    return [f"{' '.join(absent)} left out: {reason}"] if absent else []
 
 
-def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answer:
+def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
     """Return an answer with 90 % intervals of its results, and what they depend on."""
     from ..reconstruction.bounds import BOUNDED, bounds
 
@@ -225,7 +245,6 @@ def _with_bounds(answer: Answer, values: Mapping[str, float], seed: int) -> Answ
         inputs,
         outputs,
         samples=DRAWS,
-        seed=seed,
         correlations=case.correlations,
         limits=False,  # the answer has intervals only
     )
@@ -307,17 +326,20 @@ def numbers_of(
     rows = {}
     numbers = {name: float(case.view.shown(name, value)) for name, value in values.items()}
     for name, value in numbers.items():
-        rule = quantity(name).unit
+        rule, meaning = quantity(name).unit, quantity(name).meaning
         group = [x for n, x in numbers.items() if quantity(n).unit == rule]
-        decimals, ends, interval = decimals_in(rule, group), None, ""
+        ends, interval, width = None, "", 0.0
         if name in intervals:
             low, high = case.view.shown_ends(name, *intervals[name])
+            width = high - low
             if rule == ANGLE and math.isfinite(value):  # a heading is within one turn
                 turns = 360.0 * round((value - (low + high) / 2) / 360.0)
                 low, high = low + turns, high + turns
-            decimals, ends = decimals_in(rule, group, high - low), (low, high)
-            interval = f"{round_number(low, decimals)} .. {round_number(high, decimals)}"
-        text, meaning = round_number(value, decimals), quantity(name).meaning
+            ends = low, high
+        decimals = decimals_in(rule, group, width)
+        if ends:
+            interval = " .. ".join(round_number(end, decimals) for end in ends)
+        text = round_number(value, decimals)
         note = clock(value) if text and "PDOF" in name else ""
         result = value if text else None
         rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, result, ends)
@@ -336,7 +358,7 @@ def clock(degrees: float) -> str:
     return f"{hour or 12} o'clock"
 
 
-def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
+def _reconstruct(case: Case, wanted: Sequence[str]) -> Answer:
     """Return the impact that agrees best with what is known, with its alternatives."""
     from ..reconstruction.answer import KNOWABLE, reconstruct
 
@@ -345,14 +367,17 @@ def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
     check_names(entries, KNOWABLE, "value that a reconstruction can use", case.source)
     duration = getattr(case.entries.get("TF"), "value", None)
     try:
-        impacts = reconstruct(entries, samples=DRAWS, seed=seed, contact_time=duration)
+        impacts = reconstruct(entries, samples=DRAWS, contact_time=duration)
     except UserError as error:
         raise UserError(str(error), case.source) from None
-    first, *alternatives = [_impact(case, impact, names) for impact in impacts]
-    reasons = [answer.warnings[0] for answer in alternatives if first.possible > answer.possible]
+    except OverflowError:
+        raise UserError("a value is too large for a reconstruction", case.source) from None
+    first, *alternatives = [_impact(case, impact, wanted) for impact in impacts]
     refusals = tuple(
-        "another impact that agrees with the values, rejected: " + reason.partition(": ")[2]
-        for reason in reasons
+        "another impact that agrees with the values, rejected: "
+        + answer.warnings[0].partition(": ")[2]
+        for answer in alternatives
+        if first.possible > answer.possible
     )
     return replace(
         first,
@@ -361,20 +386,27 @@ def _reconstruct(case: Case, names: Iterable[str], seed: int) -> Answer:
     )
 
 
-def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
-    """Return one impact as an answer."""
+def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer:
+    """Return one impact as an answer; of values that contradict one another without numbers."""
     from ..reconstruction import words
 
-    view, values = case.view, impact.values
-    scene, warnings = {**case.numbers, **values}, words.warnings(impact, view)
+    view, values = case.view, {**impact.values}
+    scene, warnings = case.numbers, words.warnings(impact, view)
     with suppress(UserError):  # an impact that leaves inputs open has no scene
-        scene |= impact.scene()
+        scene = impact.scene()
+        more, _ = evaluate(scene, (*(name for name in wanted if name not in values), "STATUS"))
+        bits = int(more["STATUS"])
+        values |= {name: float(x) for name, x in more.items() if not math.isnan(x)}
         if not impact.is_adverse:
-            bits = int(evaluate(impact.scene(), ("STATUS",))[0]["STATUS"])
             warnings += status.sentences(bits & ~status.IMPOSSIBLE)
+    is_exact = {*case.entries} - {*case.ranges}
+    names = wanted or [name for name in BACKWARD if name not in is_exact]
     results = [name for name in names if name in values or name in impact.intervals]
-    if impact.verdict == "contradictory":  # numbers of the nearest impact settle nothing
-        results = []
+    remarks = list(words.remarks(impact))
+    if impact.verdict == "contradictory":  # the nearest impact would be taken for an answer
+        scene, results = {}, []
+    else:
+        remarks += _left_out(case, wanted, results)
     fractions = {
         result: {words.entry(impact, name): x for name, x in parts.items()}
         for result, parts in impact.drivers.items()
@@ -394,9 +426,9 @@ def _impact(case: Case, impact: Reconstruction, names: Iterable[str]) -> Answer:
             "assumed": words.assumptions(impact),
             "helps": words.advice(impact),
         },
-        remarks=(*case.remarks, *words.remarks(impact)),
+        remarks=(*case.remarks, *remarks),
         warnings=tuple(warnings),
-        scene=scene,
+        scene={**scene, **values} if scene else {},
     )
 
 

@@ -6,23 +6,20 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Sequence
-from functools import lru_cache
 from hashlib import sha256
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 import numpy
 
-from ..errors import UserError, library, printable
+from ..errors import UserError
 from ..files import replacing
-from ..printouts import words
 from ..version import __version__
 from .answers import Answer
 from .drawing import draw, to_png
+from .pages import render
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
-
     from .exhibits import Exhibit
 
 ENDINGS = (".html", ".svg", ".png")
@@ -65,33 +62,11 @@ VERIFICATION_NOT_JUDGED = (
 )
 
 
-@lru_cache(maxsize=1)
-def environment() -> Environment:
-    """Return the environment of the templates. Raises UserError if jinja2 is not installed."""
-    jinja2 = library("jinja2", "report", "a report")
-    templates: Environment = jinja2.Environment(
-        loader=jinja2.PackageLoader(__package__),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    templates.filters["printable"] = _displayed_text
-    templates.globals["words"] = words
-    return templates
-
-
-def _displayed_text(text: object) -> str:
-    """Return a text of any source for a page, with escapes for what does not print."""
-    lines = str(text).replace("\r\n", "\n").replace("\r", "\n")
-    return printable(lines, "\n\t")
-
-
 def _render(template: str, **values: object) -> str:
     """Return a page."""
     python = platform.python_version()
     versions = f"impact88 {__version__}, numpy {numpy.__version__}, Python {python}"
-    return environment().get_template(template).render(versions=versions, **values)
+    return render(template, versions=versions, **values)
 
 
 def drawing_of(answer: Answer) -> tuple[str, str]:

@@ -1,10 +1,11 @@
 """The scene from above as an SVG picture: bodies, velocities, velocity changes, spins, impulse.
 
 The contact point is the origin. It lies DA at TA + PA from A's center of gravity and DB at TB + PB
-from B's (line 330 of the listing); A faces TA + 180 and B faces TB. Points in the plane are
-complex, x + iy along the listing's axes; paper has y downwards. The picture is what one sees from
-above whatever the axes of the case: of SAE axes y is shown to the right of x, and with compass
-headings north is up. The values come from an answer; nothing of the impact is computed.
+from B's (line 330 of the listing); A faces TA + 180 and B faces TB. Points are complex, x + iy:
+along the listing's axes in the plane, in pixels with y downwards on paper. The picture is what one
+sees from above whatever the axes of the case: of SAE axes y is shown to the right of x, and with
+compass headings north is up. The numbers are those of the answer; how things look, and the words of
+the legend, are in `templates/drawing.svg`.
 """
 
 from __future__ import annotations
@@ -12,17 +13,18 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator, Mapping
-from textwrap import wrap
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..cases import Case, View
-from ..errors import UserError, library, printable
-from ..mechanics.solve import evaluate
+from ..errors import UserError, library
 from ..names import LENGTH, MASS, missing
-from .answers import Answer, numbers_of
-from .paper import BORDER, Paper, Points, arc
+from .answers import Answer, Row, numbers_of
+from .pages import render
+
+Points = NDArray[Any]  # complex
 
 CLASSES = (
     (450.0, "a motorcycle", 2.2, 0.8),
@@ -36,55 +38,79 @@ CLASSES = (
 BARRIER = "a barrier"
 DISC = "a disc (point mass)"
 UNKNOWN_MASS = 1500.0  # kg: a body whose mass is not known is drawn as a car
-
-REACH = 150.0  # px from the contact point to the farthest point of a body
-SPEED_REACH = 0.95  # length of the fastest velocity's arrow, as a fraction of that distance
-FORCE_REACH = 0.5  # length of the impulse's arrow, likewise
-PLANE_REACH = 0.62  # half the contact plane, likewise
-ASIDE = 0.06j  # distance between arrows that start from one center, likewise
-SPIN_TURN = 2.2  # radians of a spin's arc on either side
-TINY = 0.005  # of the largest velocity: a smaller one, or a slower spin, is not drawn
 CORNERS = np.array([0.5 - 0.5j, 0.5 + 0.5j, -0.5 + 0.5j, -0.5 - 0.5j, 0.5 - 0.5j])
 VEHICLE = np.array([0.25 - 0.5j, 0.42, 0.25 + 0.5j, *CORNERS[[1, 0, 3, 2]], 0.25 + 0.5j])
 """Outlines that face x: fractions of length and i times width; a vehicle's front is marked."""
-VELOCITIES = {"A": "UX UY VAX VAY".split(), "B": "VX VY VBX VBY".split()}
-SIZES = "SA SB SAF SBF DVA DVB P WA WAF WB WBF PDOFA PDOFB".split()
+
+# lengths in px
+REACH = 150.0  # from the contact point to the farthest point of a body
+LONGEST_VELOCITY = 142.0
+IMPULSE_LENGTH = 75.0
+HALF_PLANE = 93.0
+SIDE_STEP = 9.0  # between arrows that start from one center
+SHORTEST = 0.7  # a shorter velocity, or a spin that moves the farthest point less, is not drawn
+SPIN_TURN = 2.2  # radians of a spin's arc on either side
+ARROWS = {
+    "before": ("v", "S{}"),
+    "after": ("V", "S{}F"),
+    "change": ("ΔV", "DV{}"),
+    "spin before": ("ω", "W{}"),
+    "spin after": ("Ω", "W{}F"),
+    "impulse": ("P", "P"),
+    "plane": ("t", ""),
+}
+"""Kinds of arrows: letter, and name of the size."""
+SPIN_RADII = {"spin before": 12.0, "spin after": 20.0}
+NUMBERS = "SA SB SAF SBF DVA DVB P WA WAF WB WBF PDOFA PDOFB".split()
 """Results beside arrows, and hours."""
-NOTES_WIDTH = 76  # characters a line
-HEADING_WIDTH = 50  # likewise
-HEADING_SIZE = 14.0  # px
-NEAREST = "NO IMPACT: nearest impact drawn"
-FORBIDDEN = "NO IMPACT: physics forbids what is drawn"
-"""Verdicts on what no impact is: of a reconstruction, and of a complete scene."""
+VELOCITIES = {"A": "UX UY VAX VAY".split(), "B": "VX VY VBX VBY".split()}
 
-
-class Look(NamedTuple):
-    """Look of one kind of arrow: letter, meaning, name of its size, width in px, dashes."""
-
-    letter: str
-    meaning: str
-    name: str
-    width: float
-    dashes: str = "none"
-
-
-BEFORE = Look("v", "velocity before, dashed", "S{}", 1.6, "5 3")
-AFTER = Look("V", "velocity after", "S{}F", 2.4)
-CHANGE = Look("ΔV", "velocity change, dotted", "DV{}", 1.4, "1.5 2.5")
-SPIN_BEFORE = Look("ω", "spin before, dashed", "W{}", 1.6, "5 3")
-SPIN_AFTER = Look("Ω", "spin after", "W{}F", 2.4)
-IMPULSE = Look("P", "impulse on A", "P", 3.0)
-PLANE = Look("t", "contact plane", "", 1.2, "9 3 2 3")
+LINE_POINTS = 200  # that represent a line
+TEXT_STEP = 2.0  # px between the points that represent a text
+TEXT_COST = 1000.0  # points of lines that are as bad to cover as a point of a text
+CHARACTER_WIDTH = 0.64  # of the size of type: an upper estimate of the mean in DejaVu Sans
+SINGLE_EXTRA = 0.15  # of the size of type: a single letter may be so much wider
+LABEL_REACHES = np.array([3.0, 8.0, 14.0, 22.0, 32.0, 45.0, 60.0, 80.0, 100.0])[:, None]
+LABEL_TURNS = np.radians([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])
+"""Places of a label: px from its point, and turns from the direction it should have."""
+GAP = 3.0  # px around a label
 
 
 class Body(NamedTuple):
-    """One body in plan: class, center of gravity, outline; velocities, NaN if not known."""
+    """One body in plan: class, center of gravity, outline."""
 
     words: str
     center: complex
     outline: Points
-    before: complex
-    after: complex
+
+
+class Arrow(NamedTuple):
+    """An arrow, its colour ("A", "B", "P" or ""), and the number beside it."""
+
+    kind: str
+    key: str
+    points: Points
+    row: Row | None = None
+
+    @property
+    def letter(self) -> str:
+        """The symbol."""
+        return ARROWS[self.kind][0]
+
+
+class Label(NamedTuple):
+    """A text in three parts, the second a subscript; ``at`` is the middle of its left edge."""
+
+    parts: tuple[str, str, str]
+    key: str
+    size: float = 12.0
+    at: complex = 0j
+
+    @property
+    def box(self) -> complex:
+        """An upper estimate of the width, and i times the height, in px."""
+        width = SINGLE_EXTRA + CHARACTER_WIDTH * len("".join(self.parts))
+        return self.size * complex(width, 1.1)
 
 
 def draw(answer: Answer) -> str:
@@ -103,9 +129,48 @@ def draw(answer: Answer) -> str:
     Raises
     ------
     UserError
-        If a velocity before the impact or the contact plane is not known, or a value is too large.
+        If a velocity before the impact or the contact plane is not known, a value is too large, or
+        jinja2 is not installed.
     """
-    return _Scene(answer).svg(printable(answer.case.title) or "Scene from above")
+    case, view = answer.case, answer.case.view
+    values = {name: x for name, x in answer.scene.items() if not math.isnan(x)}
+    if not values:
+        raise UserError("the values contradict one another; no impact can be drawn")
+    if absent := [name for name in "UX UY VX VY GA".split() if name not in values]:
+        raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
+    sizes = {name: values[name] for name in NUMBERS if name in values}
+    if math.inf in sizes.values():
+        raise UserError("a value is too large to be drawn")
+    rows = {**numbers_of(case, sizes), **answer.found}
+    bodies = {name: _body(name, values, case) for name in "AB"}
+    scale = REACH / max(abs(body.outline).max() for body in bodies.values())
+    # north, which is x of SAE axes, is up
+    turn = scale * (1j if view.axes and view.headings else 1)
+    places = {
+        name: Body(body.words, (body.center * turn).conjugate(), np.conj(body.outline * turn))
+        for name, body in bodies.items()
+    }
+    arrows = [
+        arrow._replace(points=np.conj(arrow.points * turn / scale))
+        for arrow in _arrows(bodies, values, rows, scale)
+        if arrow.kind != "plane" or "GA" in case.entries
+    ]
+    labels, low, high = _labels(places, arrows)
+    unit = float(view.map("DA")[0])
+    amount = float(f"{REACH / 4 / scale / unit:.0e}")  # one digit times a power of ten
+    return render(
+        "drawing.svg",
+        answer=answer,
+        case=case,
+        bodies=places,
+        arrows=arrows,
+        labels=labels,
+        low=low,
+        high=high,
+        scale=amount * unit * scale if bodies["A"].words != DISC else 0,  # a disc's size is none
+        amount=f"{amount:g} {view.unit('DA')}",
+        rows=rows,
+    )
 
 
 def to_png(svg: str, width: int = 1440) -> bytes:
@@ -119,6 +184,12 @@ def _unit(degrees: float) -> complex:
     return cmath.rect(1.0, math.radians(degrees))
 
 
+def _arc(radius: float, start: float = 0.0, stop: float = math.tau) -> Points:
+    """Return points of a circle around 0 from one angle in radians to another."""
+    points: Points = radius * np.exp(1j * np.linspace(start, stop, 37))
+    return points
+
+
 def _shape(name: str, values: Mapping[str, float], case: Case) -> tuple[str, Points]:
     """Return class and outline of a body that faces x: as measured, or by its weight.
 
@@ -129,7 +200,7 @@ def _shape(name: str, values: Mapping[str, float], case: Case) -> tuple[str, Poi
     _, words, *sizes = next(row for row in CLASSES if mass * kilogram <= row[0])
     length, width = (size / meter for size in sizes)
     if values["M"] == 4:
-        return DISC, arc(width / 2)
+        return DISC, _arc(width / 2)
     if f"L{name}" in case.sizes:
         words, (length, width) = "measured", (case.sizes[side + name].value for side in "LB")
     shape = CORNERS if words == BARRIER else VEHICLE
@@ -137,126 +208,84 @@ def _shape(name: str, values: Mapping[str, float], case: Case) -> tuple[str, Poi
 
 
 def _body(name: str, values: Mapping[str, float], case: Case) -> Body:
-    """Return a body in plan."""
+    """Return a body in the plane."""
     side = 1 if name == "A" else -1
-    components = [values.get(velocity, math.nan) for velocity in VELOCITIES[name]]
-    before, after = complex(*components[:2]), complex(*components[2:])
     words, shape = _shape(name, values, case)
     inward = side * _unit(values["GA"])  # from the contact plane to the body
-    course = math.degrees(cmath.phase(-side * before))
-    is_fixed = words in (DISC, BARRIER)
-    ahead = -inward if is_fixed else -side * _unit(values.get(f"T{name}", course))
+    faces_plane = words in (DISC, BARRIER) or f"T{name}" not in values
+    ahead = -inward if faces_plane else -side * _unit(values[f"T{name}"])
     outline = shape * ahead
     center = -values.get(f"D{name}", 0.0) * ahead * _unit(values.get(f"P{name}", 0.0))
-    if is_fixed or not (values.get("DA") or values.get("DB")):  # moved to the contact plane
-        center = inward * float((outline / inward).real.max())
-    return Body(words, center, center + outline, before, after)
+    if words in (DISC, BARRIER) or not (values.get("DA") or values.get("DB")):
+        center = inward * float((outline / inward).real.max())  # moved to the contact plane
+    return Body(words, center, center + outline)
 
 
-class _Scene(Paper):
-    """The scene of an answer on paper. Raises UserError for what cannot be drawn."""
-
-    def __init__(self, answer: Answer) -> None:
-        super().__init__()
-        values = {name: float(x) for name, x in answer.scene.items() if not math.isnan(x)}
-        if absent := [name for name in "UX UY VX VY GA".split() if name not in values]:
-            raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
-        sizes, _ = evaluate(values, SIZES)
-        self.sizes = {name: float(x) for name, x in sizes.items() if not math.isnan(x)}
-        if math.inf in self.sizes.values():
-            raise UserError("a value is too large to be drawn")
-        self.view = answer.case.view
-        self.rows = {**numbers_of(answer.case, self.sizes), **answer.found}
-        self.bodies = {name: _body(name, values, answer.case) for name in "AB"}
-        self.reach = max(abs(body.outline).max() for body in self.bodies.values())
-        self.speed = max(x for name, x in self.sizes.items() if name[0] == "S") or 1.0
-        # north, which is x of SAE axes, is up
-        self.turn = 1j if self.view.axes and self.view.headings else 1 + 0j
-        self.labels: list[tuple[Points, str, str]] = []
-        self.legend: dict[Look, str] = {}  # in the order drawn
-        for name, body in self.bodies.items():
-            self._draw_body(name, body)
-        plane = 1j * PLANE_REACH * self.reach * _unit(values["GA"])
-        if "GA" in answer.case.entries:
-            self._draw_arrow(PLANE, "", plane * np.array([-1, 1]))
-        self._draw_dot(0j, "")
-        first = self.bodies["A"]
-        if size := self.sizes.get("P"):
-            run = FORCE_REACH * self.reach * values["MA"] / size * (first.after - first.before)
-            self._draw_arrow(IMPULSE, "P", run * np.array([0, 1]))
-        for ends, text, key in self.labels:
-            start, end = self._at(ends)
-            self.label(end, end - start, text, key, 18.0 if text in self.bodies else 12.0)
-        self._draw_legend(answer)
-
-    def _at(self, points: Points) -> Points:
-        """Return points of the plane on paper."""
-        places: Points = np.conj(points * self.turn) * (REACH / self.reach)
-        return places
-
-    def _draw_body(self, name: str, body: Body) -> None:
-        """Draw a body, its velocities, and its spins as arcs away from the contact."""
-        center, change = body.center, body.after - body.before
-        self.line(self._at(body.outline), name, opacity=0.14)
-        self._draw_dot(center, name)
-        self.labels.append((np.array([0, center]), name, name))
-        aside = ASIDE if name == "A" else -ASIDE
-        arrows = (BEFORE, body.before, 0j), (AFTER, body.after, aside), (CHANGE, change, -aside)
-        for look, velocity, shift in arrows:
-            number = look.name.format(name)
-            if self.sizes.get(number, 0.0) > TINY * self.speed:
-                run = SPEED_REACH * self.reach / self.speed * velocity
-                start = center - run * (look is BEFORE) + shift * self.reach * run / abs(run)
-                self._draw_arrow(look, name, start + run * np.array([0, 1]))
-        for look, radius in (SPIN_BEFORE, 0.075), (SPIN_AFTER, 0.11):
-            spin = self.sizes.get(look.name.format(name), 0.0)
-            if abs(spin) * self.reach > TINY * self.speed:
+def _arrows(
+    bodies: Mapping[str, Body],
+    values: Mapping[str, float],
+    rows: Mapping[str, Row],
+    scale: float,
+) -> Iterator[Arrow]:
+    """Yield the arrows in px along the listing's axes."""
+    speeds = [x for name, x in values.items() if name in ("SA", "SB", "SAF", "SBF")]
+    fastest = max(speeds) or 1.0
+    for name, body in bodies.items():
+        velocities = [values.get(component, math.nan) for component in VELOCITIES[name]]
+        before, after = complex(*velocities[:2]), complex(*velocities[2:])
+        step = SIDE_STEP * (1j if name == "A" else -1j)
+        center = body.center * scale
+        moves = ("before", before, 0j), ("after", after, step), ("change", after - before, -step)
+        for kind, velocity, aside in moves:
+            run = LONGEST_VELOCITY / fastest * velocity
+            if abs(run) > SHORTEST:  # not of NaN
+                start = center + aside * run / abs(run) - run * (kind == "before")
+                row = rows.get(ARROWS[kind][1].format(name))
+                yield Arrow(kind, name, start + run * np.array([0, 1]), row)
+        for kind, radius in SPIN_RADII.items():
+            size = ARROWS[kind][1].format(name)
+            spin = values.get(size, 0.0)
+            if abs(spin) * LONGEST_VELOCITY / fastest * REACH / scale > SHORTEST:
                 middle, turn = cmath.phase(center), math.copysign(SPIN_TURN, spin)
-                points = arc(radius * self.reach, middle - turn, middle + turn)
-                self._draw_arrow(look, name, center + points)
+                arc = _arc(radius, middle - turn, middle + turn)
+                yield Arrow(kind, name, center + arc, rows.get(size))
+        if name == "A" and values.get("P"):
+            run = IMPULSE_LENGTH * values["MA"] / values["P"] * (after - before)
+            yield Arrow("impulse", "P", run * np.array([0, 1]), rows.get("P"))
+    yield Arrow("plane", "", 1j * HALF_PLANE * _unit(values["GA"]) * np.array([-1, 1]))
 
-    def _draw_dot(self, point: complex, key: str) -> None:
-        """Draw a dot."""
-        self.line(self._at(point + arc(0.006 * self.reach)), key, 4.0)
 
-    def _draw_arrow(self, look: Look, key: str, points: Points) -> None:
-        """Draw an arrow and keep its label: at its tip, of a velocity before at its tail."""
-        self.line(self._at(points), key, look.width, look.dashes, head=f"url(#tip{key})")
-        letter = look.letter + f"_{key.lower()}" * (key in self.bodies)
-        text, meaning = letter, look.meaning
-        if row := self.rows.get(look.name.format(key)):
-            text += f" {row.text}"
-            meaning += f" [{row.unit or 'consistent units'}]"
-        self.legend[look] = f"{look.letter}: {meaning}."
-        ends = points[1::-1] if look is BEFORE else points[-2:]
-        self.labels.append((ends, text, key))
-
-    def _draw_legend(self, answer: Answer) -> None:
-        """Draw title and verdict above the scene; scale, legend and notes below."""
-        low, high = self.corners()
-        heading = wrap(printable(answer.case.title), HEADING_WIDTH)
-        if not answer.possible:
-            heading.append(NEAREST if answer.asked == "reconstruct" else FORBIDDEN)
-        for k, line in enumerate(reversed(heading)):
-            self.text(low + BORDER.conjugate() - 20j * k, line, size=HEADING_SIZE)
-        corner = complex(low.real, high.imag) + BORDER
-        if self.bodies["A"].words != DISC:  # whose size means nothing
-            # the scale has one digit times a power of ten, in the unit shown
-            unit = float(self.view.map("DA")[0])
-            amount = float(f"{self.reach / 4 / unit:.0e}")
-            end = corner + amount * unit * REACH / self.reach
-            self.line(np.array([corner, end]), width=3.0)
-            self.text(end + 8, f"{amount:g} {self.view.unit('DA')}")
-        notes = " ".join([*self.legend.values(), *self._notes()])
-        for k, line in enumerate(wrap(notes, NOTES_WIDTH), 1):
-            self.text(corner + 15j * k, line)
-
-    def _notes(self) -> Iterator[str]:
-        """Yield the notes of the legend."""
-        yield "North is up." if self.view.headings else "The x axis points to the right."
-        if {SPIN_BEFORE, SPIN_AFTER} & {*self.legend}:
-            yield f"Spins are positive {'' if self.view.axes else 'counter'}clockwise."
-        for name, body in self.bodies.items():
-            row = self.rows.get(f"PDOF{name}")
-            hour = f"; struck from {row.note}" if row and row.note else ""
-            yield f"{name} is drawn as {body.words}{hour}."
+def _labels(
+    bodies: Mapping[str, Body], arrows: list[Arrow]
+) -> tuple[list[Label], complex, complex]:
+    """Return a label for each body and arrow, placed where it covers nothing, else where it covers
+    least, and the corners of everything on paper."""
+    steps = np.linspace(0, 1, LINE_POINTS)
+    ink = np.concatenate(
+        [
+            np.interp(steps, np.linspace(0, 1, len(line)), line)
+            for line in (*(b.outline for b in bodies.values()), *(a.points for a in arrows))
+        ]
+    )
+    costs = np.ones(len(ink))
+    unplaced = [(Label((name, "", ""), name, 18.0), 0j, b.center) for name, b in bodies.items()]
+    for arrow in arrows:
+        body = arrow.key.lower() if arrow.key in bodies else ""
+        parts = (arrow.letter, body, f" {arrow.row.text}" if arrow.row else "")
+        ends = arrow.points[1::-1] if arrow.kind == "before" else arrow.points[-2:]
+        unplaced.append((Label(parts, arrow.key), *ends))
+    labels = []
+    for label, start, end in unplaced:
+        half = label.box / 2
+        rays = np.exp(1j * (cmath.phase(end - start) + LABEL_TURNS))
+        centers = end + (half.real + LABEL_REACHES) * rays.real
+        centers = (centers + 1j * (half.imag + LABEL_REACHES) * rays.imag).ravel()
+        gaps = ink - centers[:, None]
+        covered = (abs(gaps.real) < half.real + GAP) & (abs(gaps.imag) < half.imag + GAP)
+        center = centers[(covered @ costs).argmin()]  # the first of the best
+        labels.append(label._replace(at=center - half.real))
+        x, y = (np.arange(-end, end + TEXT_STEP, TEXT_STEP) for end in (half.real, half.imag))
+        ink = np.append(ink, center + x + 1j * y[:, None])
+        costs = np.append(costs, np.full(len(ink) - len(costs), TEXT_COST))
+    x, y = ink.real, ink.imag
+    return labels, complex(x.min(), y.min()), complex(x.max(), y.max())

@@ -22,8 +22,9 @@ from ..files import decode
 from ..program.run import run
 from ..program.scene import sample
 from ..report.answers import ask
-from ..report.casepage import case_page, drawing_of, environment, verification_page
+from ..report.casepage import case_page, drawing_of, verification_page
 from ..report.exhibits import Exhibit, examine
+from ..report.pages import environment
 from .guard import HEADERS, MAX_BODY, PAGE_POLICY, REPORT_POLICY, refusal
 from .questions import answer_in_time
 
@@ -192,7 +193,7 @@ def scene() -> Response:
 
 def program() -> str:
     """Return the page of the 1988 program."""
-    number = request.args.get("sample", "")
+    number = request.args.get("sample")
     texts = sample(int(number)) if number in ("1", "2", "3") else {}
     return render_template("program.html", texts=texts)
 
