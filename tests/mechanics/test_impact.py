@@ -199,16 +199,6 @@ FRAMES = ["pandas", "polars", "pyarrow"]
 @pytest.mark.parametrize("kind", FRAMES)
 def test_frames_give_arrays(kind):
     library_of = pytest.importorskip(kind)
-    moving = {
-        "IA": [1],
-        "IB": [1],
-        "UX": [3],
-        "UY": [4],
-        "VX": [0],
-        "VY": [2],
-        "WA": [0],
-        "WB": [0],
-    }
     g = mixed_scenes(60)
     columns = {**g, "note": ["a"] * 60, "E": g["E"].astype(np.float32)}
     make = library_of.table if kind == "pyarrow" else library_of.DataFrame
@@ -217,7 +207,10 @@ def test_frames_give_arrays(kind):
     results = solve(holes, ["VAX", "STATUS"])
     assert np.isnan(results["VAX"][0])
     assert results["STATUS"][0] == 64
-    assert solve(make({"MA": [2.0], "MB": [1.0], **moving}), "KI")["KI"] == 27.0
+    moving = dict(
+        zip("MA MB IA IB UX UY VX VY WA WB".split(), [2, 1, 1, 1, 3, 4, 0, 2, 0, 0], strict=True)
+    )
+    assert solve(make({name: [x] for name, x in moving.items()}), "KI")["KI"] == 27.0
 
 
 def test_values_of_other_types():
@@ -290,6 +283,9 @@ def test_evaluate_at_small_and_large_sizes_by_both_ways():
         np.testing.assert_array_equal(together[name][:100], subset[name])
         np.testing.assert_array_equal(together[name], slow[name])
     assert evaluate(one_scene(), "UX VAX")[0]["UX"] == one_scene()["UX"]
+    # the spin of the pivot, of scenes that are none
+    pivot = solve({**one_scene(), "MU": -10.0}, "WAF")["WAF"]
+    assert evaluate(one_scene(), "wa_p")[0]["wa_p"] == pivot
     # of a quantity that a formula gives among others the known value counts
     values, _ = evaluate({**one_scene(), "VAX": 5.0}, ["XAF", "VAY"])
     assert values["XAF"] != solve(one_scene(), "XAF")["XAF"]

@@ -3,9 +3,10 @@
 Each function computes a few quantities from others; its parameters are their names, so that a
 result needs exactly the functions that lead to it (`plan`). numpy runs a function over arrays
 unchanged, and `translate` prints it as a C loop. Bodies are therefore assignments of ``+ - * /``,
-comparisons, ``& | ~``, `where`, `fabs` and `sqrt`, with decimal points in all numbers; the last
-line returns the quantities that others may use, which are numbers, never conditions. To add a
-result, write its function here, its row in `names.RESULTS` and its line in `reference`.
+comparisons, ``& | ~``, `where`, `fabs`, `sqrt` and bits of `Status`, one name each, with decimal
+points in all numbers; the last line returns the quantities that others may use, which are numbers,
+never conditions. To add a result, write its function here, its row in `names.RESULTS` and its line
+in `reference`.
 
 Axes and signs: n = (cos GA, sin GA) and t = (-sin GA, cos GA), A on the +n side; the impulse acts
 on A, and its opposite on B. Lower-case names: s, c sine and cosine of GA; ma, mb, ia, ib inverse
@@ -35,9 +36,11 @@ small): nothing cancels, however long the arms are and however unequal the bodie
 from numpy import absolute as fabs
 from numpy import inf, sqrt, where
 
+from ..names import PIVOT
+from ..status import Status
+
 INF = inf
 LARGEST = 1.7976931348623157e308  # the largest double
-PIVOT = -10.0  # the MU of a pivot
 RADIAN = 0.017453292519943295  # of a degree
 PER_QUARTER = 1.0 / 90.0  # quarter turns of a degree
 ROUND = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to an integer
@@ -81,8 +84,10 @@ def sine_and_cosine(degrees):
         + q * (2.08757232129817482790e-09
         + q * -1.13596475577881948265e-11))))
     ))  # fmt: skip
-    sin_k, cos_k = k * (2.0 - fabs(k)), 1.0 - fabs(k)
-    sine, cosine = sin_k * cos_r + cos_k * sin_r, cos_k * cos_r - sin_k * sin_r
+    sin_k = k * (2.0 - fabs(k))
+    cos_k = 1.0 - fabs(k)
+    sine = sin_k * cos_r + cos_k * sin_r
+    cosine = cos_k * cos_r - sin_k * sin_r
     return sine, cosine
 
 
@@ -90,20 +95,23 @@ def sine_and_cosine(degrees):
 
 
 def moment_coefficient(M, EM):
-    """Return EM, 0 for point masses."""
+    """Return EM, 0 for point masses, and z."""
     em = where(M == 4.0, 0.0, EM)
-    return (em,)
+    z = 1.0 - (em + em)
+    return em, z
 
 
 def body_spins(M, WA, WB):
     """Return the initial spins, 0 for point masses."""
-    wa, wb = where(M == 4.0, 0.0, WA), where(M == 4.0, 0.0, WB)
+    wa = where(M == 4.0, 0.0, WA)
+    wb = where(M == 4.0, 0.0, WB)
     return wa, wb
 
 
 def inverse_inertias(M, IA, IB):
     """Return the inverse inertias, 1 for point masses: they have no spin to act on."""
-    ia, ib = where(M == 4.0, 1.0, 1.0 / IA), where(M == 4.0, 1.0, 1.0 / IB)
+    ia = where(M == 4.0, 1.0, 1.0 / IA)
+    ib = where(M == 4.0, 1.0, 1.0 / IB)
     return ia, ib
 
 
@@ -116,34 +124,39 @@ def contact_normal(GA):
 def arm_direction_a(M, DA, PA, TA):
     """Return the length and the direction of A's arm."""
     point = M == 4.0
-    da, angle_a = where(point, 0.0, DA), where(point, 0.0, PA + TA)
+    da = where(point, 0.0, DA)
+    angle_a = where(point, 0.0, PA + TA)
     return da, angle_a
 
 
 def arm_direction_b(M, DB, PB, TB):
     """Return the length and the direction of B's arm."""
     point = M == 4.0
-    db, angle_b = where(point, 0.0, DB), where(point, 0.0, PB + TB)
+    db = where(point, 0.0, DB)
+    angle_b = where(point, 0.0, PB + TB)
     return db, angle_b
 
 
 def lever_arm_a(da, angle_a, GA):
     """Return what a unit of A's spin adds to the relative velocity along n and t."""
     sine, cosine = sine_and_cosine(angle_a - GA)
-    an, at = da * sine, -(da * cosine)
+    an = da * sine
+    at = -(da * cosine)
     return an, at
 
 
 def lever_arm_b(db, angle_b, GA):
     """Return what a unit of B's spin adds to the relative velocity along n and t."""
     sine, cosine = sine_and_cosine(angle_b - GA)
-    bn, bt = db * sine, -(db * cosine)
+    bn = db * sine
+    bt = -(db * cosine)
     return bn, bt
 
 
 def inverse_masses(MA, MB):
     """Return the inverse masses and their sum."""
-    ma, mb = 1.0 / MA, 1.0 / MB
+    ma = 1.0 / MA
+    mb = 1.0 / MB
     R = ma + mb
     return ma, mb, R
 
@@ -151,30 +164,38 @@ def inverse_masses(MA, MB):
 def reduced_inertia(ia, ib):
     """Return the reduced inertia, the bodies' parts in the mean spin, and 1/(Ia + Ib)."""
     Ired = 1.0 / (ia + ib)
-    part_a, part_b = ib * Ired, ia * Ired  # of the mean spin
+    part_a = ib * Ired
+    part_b = ia * Ired
     J = ia * part_a
     return Ired, part_a, part_b, J
 
 
 def combined_arms(an, at, bn, bt, ia, ib):
     """Return the arms of the mean spin and of the difference of the spins."""
-    sn, st = an + bn, at + bt
-    kn, kt = an * ia - bn * ib, at * ia - bt * ib
+    sn = an + bn
+    st = at + bt
+    kn = an * ia - bn * ib
+    kt = at * ia - bt * ib
     return sn, st, kn, kt
 
 
 def mean_spin(wa, wb, part_a, part_b, Ired):
     """Return the mean spin, by its parts too, and what the moment can change of the spins."""
-    from_a, from_b = part_a * wa, part_b * wb
-    mean, turn = from_a + from_b, Ired * (wa - wb)
+    from_a = part_a * wa
+    from_b = part_b * wb
+    mean = from_a + from_b
+    turn = Ired * (wa - wb)
     return from_a, from_b, mean, turn
 
 
 def relative_velocity(UX, UY, VX, VY, s, c, an, at, bn, bt, wa, wb):
     """Return the relative velocity before, of the centers and of the contact points."""
-    dx, dy = UX - VX, UY - VY
-    cn, ct = c * dx + s * dy, c * dy - s * dx
-    gn, gt = cn + (an * wa + bn * wb), ct + (at * wa + bt * wb)
+    dx = UX - VX
+    dy = UY - VY
+    cn = c * dx + s * dy
+    ct = c * dy - s * dx
+    gn = cn + (an * wa + bn * wb)
+    gt = ct + (at * wa + bt * wb)
     return cn, ct, gn, gt
 
 
@@ -188,11 +209,12 @@ def signed_friction(MU, gt):
 
 
 def sliding_impulse(
-    E, mu, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn, cn, gn
+    E, mu, em, z, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn, cn, gn
 ):
     """Return the determinant, Pn and h for Pt = mu Pn."""
-    z, w = 1.0 - (em + em), E * gn + cn
-    s_mu, k_mu = sn + mu * st, kn + mu * kt
+    w = E * gn + cn
+    s_mu = sn + mu * st
+    k_mu = kn + mu * kt
     D_s = z * (R + J * sn * s_mu) - em * (Ired * kn * k_mu)
     Pn_s = (em * kn * turn - z * (w + sn * mean)) / D_s
     X = (bn + mu * bt) * from_a - (an + mu * at) * from_b
@@ -203,6 +225,7 @@ def sliding_impulse(
 def pivot_impulse(
     E,
     em,
+    z,
     R,
     J,
     Ired,
@@ -229,19 +252,21 @@ def pivot_impulse(
     The determinant is R times a sum of squares; ``lever`` is the cross product of k and s without
     the difference of its products.
     """
-    z, w = 1.0 - (em + em), E * gn + cn
+    w = E * gn + cn
     axb = an * bt - at * bn
     lever = (ia + ib) * axb  # k x s, without the difference of products
     sxw = sn * ct - st * w
-    across = em * (Ired * (kn * ct - kt * w) + axb * mean)  # along k turned by a quarter
-    upon = z * J * sxw + em * turn * J * lever  # along s turned
-    straight, twist = z * R, em * turn * R
-    D_p = straight * (R + J * (sn * sn + st * st)) - em * (
+    along_k = em * (Ired * (kn * ct - kt * w) + axb * mean)  # along k turned by a quarter
+    along_s = z * J * sxw + em * turn * J * lever  # along s turned by a quarter
+    of_masses = z * R
+    of_twist = em * turn * R
+    D_p = of_masses * (R + J * (sn * sn + st * st)) - em * (
         R * Ired * (kn * kn + kt * kt) + J * axb * lever
     )
-    Nn = twist * kn - straight * (w + sn * mean) + st * upon - kt * across
-    Nt = twist * kt - straight * (ct + st * mean) - sn * upon + kn * across
-    Xn, Xt = bn * from_a - an * from_b, bt * from_a - at * from_b
+    Nn = of_twist * kn - of_masses * (w + sn * mean) + st * along_s - kt * along_k
+    Nt = of_twist * kt - of_masses * (ct + st * mean) - sn * along_s + kn * along_k
+    Xn = bn * from_a - an * from_b
+    Xt = bt * from_a - at * from_b
     h_p = (R * (Ired * (kn * w + kt * ct) - R * turn - (sn * Xn + st * Xt)) - J * axb * sxw) / D_p
     return D_p, Nn, Nt, h_p
 
@@ -249,8 +274,10 @@ def pivot_impulse(
 def impulse(MU, mu, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
     """Return the impulse, h and the determinant."""
     pivot = MU == PIVOT
-    PN, PT = where(pivot, Nn / D_p, Pn_s), where(pivot, Nt / D_p, mu * Pn_s)
-    h, D = where(pivot, h_p, h_s), where(pivot, D_p, D_s)
+    PN = where(pivot, Nn / D_p, Pn_s)
+    PT = where(pivot, Nt / D_p, mu * Pn_s)
+    h = where(pivot, h_p, h_s)
+    D = where(pivot, D_p, D_s)
     return PN, PT, h, D
 
 
@@ -265,26 +292,31 @@ def moment_impulse(M, em, h):
 
 def velocity_changes(PN, PT, s, c, ma, mb):
     """Return A's velocity change along x and y, and the reverse of B's."""
-    Px, Py = c * PN - s * PT, s * PN + c * PT
-    ax, ay, bx, by = ma * Px, ma * Py, mb * Px, mb * Py
+    Px = c * PN - s * PT
+    Py = s * PN + c * PT
+    ax = ma * Px
+    ay = ma * Py
+    bx = mb * Px
+    by = mb * Py
     return ax, ay, bx, by
 
 
 def final_velocities(UX, UY, VX, VY, ax, ay, bx, by):
     """Return the final velocities (Equations 13 and 14)."""
-    VAX, VAY, VBX, VBY = UX + ax, UY + ay, VX - bx, VY - by
+    VAX = UX + ax
+    VAY = UY + ay
+    VBX = VX - bx
+    VBY = VY - by
     return VAX, VAY, VBX, VBY
 
 
-def spin_weights(em, part_a, part_b):
+def spin_weights(em, z, part_a, part_b):
     """Return the weights of a body's own and the other's spin in its final spin."""
-    z, q = 1.0 - (em + em), 1.0 - em
-    own_a, own_b, given_a, given_b = (
-        z * part_a - em * part_b,
-        z * part_b - em * part_a,
-        q * part_a,
-        q * part_b,
-    )
+    q = 1.0 - em
+    own_a = z * part_a - em * part_b
+    own_b = z * part_b - em * part_a
+    given_a = q * part_a
+    given_b = q * part_b
     return own_a, own_b, given_a, given_b
 
 
@@ -292,6 +324,7 @@ def sliding_spins(
     E,
     mu,
     em,
+    z,
     R,
     J,
     Ired,
@@ -320,8 +353,11 @@ def sliding_spins(
     They are not computed from the impulse, whose parts cancel where arms are far longer than radii
     of gyration.
     """
-    w, a, b = E * gn + cn, an + mu * at, bn + mu * bt
-    push, twist = (1.0 - (em + em)) * J * (sn + mu * st), em * Ired * (kn + mu * kt)
+    w = E * gn + cn
+    a = an + mu * at
+    b = bn + mu * bt
+    push = z * J * (sn + mu * st)
+    twist = em * Ired * (kn + mu * kt)
     cross = em * (a * ia * wb - b * ib * wa)
     wa_s = (R * (own_a * wa + given_b * wb) - w * (push - ia * twist) + bn * cross) / D_s
     wb_s = (R * (own_b * wb + given_a * wa) - w * (push + ib * twist) - an * cross) / D_s
@@ -332,20 +368,24 @@ def pivot_spins(
     E, em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b, given_a, given_b, cn, ct, gn, D_p
 ):
     """Return the final spins of bodies without slip at separation."""
-    w, ab = E * gn + cn, an * bn + at * bt
-    state_a, state_b = R * wa - ia * (an * w + at * ct), R * wb - ib * (bn * w + bt * ct)
+    w = E * gn + cn
+    ab = an * bn + at * bt
+    state_a = R * wa - ia * (an * w + at * ct)
+    state_b = R * wb - ib * (bn * w + bt * ct)
     turn_a = em * (ab * ia * wb - (bn * bn + bt * bt) * ib * wa)
     turn_b = em * (ab * ib * wa - (an * an + at * at) * ia * wb)
     lever = em * J * (ia + ib) * (an * bt - at * bn)
     wa_p = R * (own_a * state_a + given_b * state_b + turn_a) - lever * (bn * ct - bt * w)
     wb_p = R * (own_b * state_b + given_a * state_a + turn_b) + lever * (an * ct - at * w)
-    wa_p, wb_p = wa_p / D_p, wb_p / D_p
+    wa_p = wa_p / D_p
+    wb_p = wb_p / D_p
     return wa_p, wb_p
 
 
 def final_spins(M, MU, WA, WB, wa_s, wb_s, wa_p, wb_p):
     """Return the final spins; those of point masses pass through."""
-    point, pivot = M == 4.0, MU == PIVOT
+    point = M == 4.0
+    pivot = MU == PIVOT
     WAF = where(point, WA, where(pivot, wa_p, wa_s))
     WBF = where(point, WB, where(pivot, wb_p, wb_s))
     return WAF, WBF
@@ -362,19 +402,28 @@ def contact_offsets(da, angle_a, db, angle_b):
     """Return the arms along x and y, d3 d4 d1 d2 of line 330: what is 0 there is 0."""
     sin_a, cos_a = sine_and_cosine(angle_a)
     sin_b, cos_b = sine_and_cosine(angle_b)
-    D3, D4, D1, D2 = da * sin_a, da * cos_a, db * sin_b, db * cos_b
+    D3 = da * sin_a
+    D4 = da * cos_a
+    D1 = db * sin_b
+    D2 = db * cos_b
     return D3, D4, D1, D2
 
 
 def contact_velocities_before(UX, UY, VX, VY, D1, D2, D3, D4, wa, wb):
     """Return the contact points' velocities before the impact (line 340)."""
-    XA, YA, XB, YB = UX + D3 * wa, UY - D4 * wa, VX - D1 * wb, VY + D2 * wb
+    XA = UX + D3 * wa
+    YA = UY - D4 * wa
+    XB = VX - D1 * wb
+    YB = VY + D2 * wb
     return XA, YA, XB, YB
 
 
 def contact_velocities_after(VAX, VAY, VBX, VBY, D1, D2, D3, D4, WAF, WBF):
     """Return the contact points' velocities after the impact (lines 700, 710)."""
-    XAF, YAF, XBF, YBF = VAX + D3 * WAF, VAY - D4 * WAF, VBX - D1 * WBF, VBY + D2 * WBF
+    XAF = VAX + D3 * WAF
+    YAF = VAY - D4 * WAF
+    XBF = VBX - D1 * WBF
+    YBF = VBY + D2 * WBF
     return XAF, YAF, XBF, YBF
 
 
@@ -392,7 +441,8 @@ def separation_speed(E, gn):
 
 def delta_v(ax, ay, bx, by):
     """Return the sizes of the velocity changes."""
-    DVA, DVB = sqrt(ax * ax + ay * ay), sqrt(bx * bx + by * by)
+    DVA = sqrt(ax * ax + ay * ay)
+    DVB = sqrt(bx * bx + by * by)
     return DVA, DVB
 
 
@@ -416,9 +466,12 @@ def finite_inertias(M, MA, MB, IA, IB):
 
     An infinite body is at rest: times 0 any number will do. Point masses have no inertia.
     """
-    fa, fb = where(MA < INF, MA, LARGEST), where(MB < INF, MB, LARGEST)
-    ja, jb = where(IA < INF, IA, LARGEST), where(IB < INF, IB, LARGEST)
-    ja, jb = where(M == 4.0, 0.0, ja), where(M == 4.0, 0.0, jb)
+    fa = where(MA < INF, MA, LARGEST)
+    fb = where(MB < INF, MB, LARGEST)
+    ja = where(IA < INF, IA, LARGEST)
+    jb = where(IB < INF, IB, LARGEST)
+    ja = where(M == 4.0, 0.0, ja)
+    jb = where(M == 4.0, 0.0, jb)
     return fa, fb, ja, jb
 
 
@@ -430,7 +483,8 @@ def energy_before(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
 
 def final_body_spins(M, WAF, WBF):
     """Return the final spins, 0 for point masses."""
-    waf, wbf = where(M == 4.0, 0.0, WAF), where(M == 4.0, 0.0, WBF)
+    waf = where(M == 4.0, 0.0, WAF)
+    wbf = where(M == 4.0, 0.0, WBF)
     return waf, wbf
 
 
@@ -482,14 +536,16 @@ def equivalent_speeds(EL, MA, MB, ma, mb):
 # -- verdicts
 
 
-def condition_number(MU, mu, em, D, R, J, Ired, an, at, bn, bt, ia, ib):
+def condition_number(MU, mu, em, z, D, R, J, Ired, sn, st, an, at, bn, bt, ia, ib):
     """Return the determinant with absolute values in every sum, over itself."""
-    size, z_ = where(MU == PIVOT, 0.0, fabs(mu)), fabs(1.0 - (em + em))
-    sn_, st_ = fabs(an) + fabs(bn), fabs(at) + fabs(bt)
-    kn_, kt_ = fabs(an) * ia + fabs(bn) * ib, fabs(at) * ia + fabs(bt) * ib
+    size = where(MU == PIVOT, 0.0, fabs(mu))
+    z_ = fabs(z)
+    sn_ = fabs(an) + fabs(bn)
+    st_ = fabs(at) + fabs(bt)
+    kn_ = fabs(an) * ia + fabs(bn) * ib
+    kt_ = fabs(at) * ia + fabs(bt) * ib
     of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_))
     of_s = of_s + fabs(em) * (Ired * kn_ * (kn_ + size * kt_))
-    sn, st = an + bn, at + bt
     of_p = z_ * R * (R + J * (sn * sn + st * st)) + fabs(em) * (
         R * Ired * (kn_ * kn_ + kt_ * kt_)
         + J * fabs(an * bt - at * bn) * (ia + ib) * (fabs(an * bt) + fabs(at * bn))
@@ -509,8 +565,10 @@ def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, MA, MB, IA, IB, UX, UY, 
     good = good & (fabs(GA) < LARGEST_ANGLE) & (MA > 0.0) & (MB > 0.0)
     turns = fabs(PA) + fabs(PB) + fabs(TA) + fabs(TB)
     body = (fabs(EM + DA + DB) < INF) & (turns < LARGEST_ANGLE) & (IA > 0.0) & (IB > 0.0)
-    free_a, free_b = MA < INF, MB < INF
-    turns_a, turns_b = point | (IA < INF), point | (IB < INF)
+    free_a = MA < INF
+    free_b = MB < INF
+    turns_a = point | (IA < INF)
+    turns_b = point | (IB < INF)
     good = good & (point | body) & ((free_a & turns_a) | (free_b & turns_b))
     good = good & (free_a | (UX == 0.0) & (UY == 0.0)) & (turns_a | (WA == 0.0))
     good = good & (free_b | (VX == 0.0) & (VY == 0.0)) & (turns_b | (WB == 0.0))
@@ -518,73 +576,67 @@ def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, MA, MB, IA, IB, UX, UY, 
     return (fit,)
 
 
-def status_bits(
-    E,
-    MU,
-    mu,
-    em,
-    an,
-    at,
-    bn,
-    bt,
-    da,
-    db,
-    ia,
-    ib,
-    kt,
-    R,
-    gn,
-    gt,
-    PN,
-    PM,
-    D_p,
-    Nn,
-    Nt,
-    KI,
-    EL,
-    COND,
-    VAX,
-    VAY,
-    VBX,
-    VBY,
-    WAF,
-    WBF,
-):
-    """Return the bits of `impact88.status.Status`; a comparison with NaN is false.
+def friction_bits(MU, mu, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, Nn, Nt):
+    """Return the bits of friction above critical and in the wrong direction.
 
     Friction is above critical, or in the wrong direction, unless it can act against the sliding
     before the impact and then, when the normal impulse has reversed the sliding, the other way
-    (``forth``: where it cannot). The net impulse is then at least
+    (``one_way``: where it cannot). The net impulse is then at least
     -Pn (w - K)^2/(K Ktt), w^2 = 2 gt K/Pn, with K and Ktt what units of Pn (and the moment with it)
     and of Pt add to the sliding, for gt/K between Pn/2 and 2 Pn; here without the root.
     """
-    size, f = fabs(Nt), where(MU == PIVOT, 0.0, mu)
+    critical = fabs(Nt)
+    friction = where(MU == PIVOT, 0.0, mu)
     sign = where(D_p < 0.0, -1.0, 1.0)
-    pushes, along = Nn * sign, where(Nt * sign < 0.0, -f, f)
+    pushing = Nn * sign
+    along = where(Nt * sign < 0.0, -friction, friction)
     approach = (gn < 0.0) & (PN > 0.0)
     backward = approach & (along < -FRICTION_TOLERANCE)
-    none = (pushes > 0.0) & (size <= FRICTION_TOLERANCE * pushes)
-    above = approach & (pushes > 0.0) & ((along - FRICTION_TOLERANCE) * pushes > size)
+    no_sliding = (pushing > 0.0) & (critical <= FRICTION_TOLERANCE * pushing)
+    above = approach & (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
     turned = (an * at * ia + bn * bt * ib) * PN + kt * PM
-    back = (fabs(f) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
+    back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
     excess = fabs(gt) + fabs(gt) - fabs(turned)
     gap = excess - back
-    forth = (gt * turned >= 0.0) | (f * gt >= 0.0) | (excess <= 0.0)
-    forth = forth | (excess >= 3.0 * fabs(turned)) | (gap < 0.0)
-    forth = forth | (gap * gap < 4.0 * (fabs(turned) * back))
-    total = VAX + VAY + VBX + VBY + WAF + WBF
-    finite = (fabs(total) < INF) & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF)
-    STATUS = where(gn >= 0.0, 1.0, 0.0) + where(PN < 0.0, 2.0, 0.0)
-    STATUS = STATUS + where(-(EL + EL) > ENERGY_TOLERANCE * KI, 8.0, 0.0)
-    STATUS = STATUS + where((E < E_MIN) | (E > E_MAX), 16.0, 0.0)
-    STATUS = STATUS + where(COND < SINGULAR_FROM, 0.0, 32.0)
-    STATUS = STATUS + where(finite & (COND <= INF), 0.0, 64.0)
-    STATUS = STATUS + where(at > SIDE_TOLERANCE * fabs(da), 256.0, 0.0)
-    STATUS = STATUS + where(bt > SIDE_TOLERANCE * fabs(db), 512.0, 0.0)
-    STATUS = STATUS + where(
-        (em < EM_MIN) | (em > EM_MAX) & ((em < NO_MOMENT) | (em > NO_MOMENT)), 1024.0, 0.0
-    )
-    STATUS = STATUS + where(f <= PIVOT, 2048.0, 0.0)
-    STATUS = STATUS + where((above | backward & none) & forth, 4096.0, 0.0)
-    STATUS = STATUS + where(backward & ~none & (size > 0.0) & forth, 8192.0, 0.0)
+    one_way = (gt * turned >= 0.0) | (friction * gt >= 0.0) | (excess <= 0.0)
+    one_way = one_way | (excess >= 3.0 * fabs(turned)) | (gap < 0.0)
+    one_way = one_way | (gap * gap < 4.0 * (fabs(turned) * back))
+    above = (above | backward & no_sliding) & one_way
+    wrong = backward & ~no_sliding & (critical > 0.0) & one_way
+    of_friction = where(above, Status.FRICTION_ABOVE_CRITICAL, 0.0)
+    of_friction = of_friction + where(wrong, Status.FRICTION_WRONG_DIRECTION, 0.0)
+    return (of_friction,)
+
+
+def coefficient_bits(E, MU, mu, em):
+    """Return the bits of coefficients out of range."""
+    moment = (em < EM_MIN) | (em > EM_MAX) & ((em < NO_MOMENT) | (em > NO_MOMENT))
+    of_range = where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)
+    of_range = of_range + where(moment, Status.EM_OUT_OF_RANGE, 0.0)
+    of_range = of_range + where((MU != PIVOT) & (mu <= PIVOT), Status.MU_OUT_OF_RANGE, 0.0)
+    return (of_range,)
+
+
+def side_bits(da, at, db, bt):
+    """Return the bits of centers on the wrong side of the contact plane."""
+    of_sides = where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
+    of_sides = of_sides + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
+    return (of_sides,)
+
+
+def solution_bits(KI, EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):
+    """Return the bits of scenes without a solution, or nearly so."""
+    finite = fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF
+    finite = finite & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
+    of_solution = where(finite, 0.0, Status.NOT_FINITE)
+    of_solution = of_solution + where(COND < SINGULAR_FROM, 0.0, Status.SINGULAR)
+    return (of_solution,)
+
+
+def status(gn, PN, KI, EL, of_range, of_friction, of_sides, of_solution):
+    """Return the bits of `impact88.status.Status`; a comparison with NaN is false."""
+    STATUS = of_range + of_friction + of_sides + of_solution
+    STATUS = STATUS + where(gn >= 0.0, Status.SEPARATING, 0.0)
+    STATUS = STATUS + where(PN < 0.0, Status.PULLING, 0.0)
+    STATUS = STATUS + where(-(EL + EL) > ENERGY_TOLERANCE * KI, Status.ENERGY_GAINED, 0.0)
     return (STATUS,)

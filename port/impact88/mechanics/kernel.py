@@ -1,6 +1,6 @@
 """Computing quantities over arrays of scenes: by the compiled library, or by numpy.
 
-The library (`machine.c`, with `formulas` as C) runs strips of 128 scenes; numpy runs the same
+The library (`kernel.c`, with `formulas` as C) runs strips of 128 scenes; numpy runs the same
 functions over longer strips, to the same bits.
 """
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from .. import library
 from ..errors import UserError
+from ..names import PIVOT
 from . import consequences, formulas
 from .plan import COMPILED, FORMULAS, OTHERS, PIVOTS, ROWS
 from .translate import digest
@@ -27,7 +28,7 @@ STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the 
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
 PROCESSORS = os.cpu_count() or 1
 NOT_FINITE = 64.0
-# kinds of results in `machine.c`
+# kinds of results in `kernel.c`
 FINITE = 0
 ANY_SIZE = 1
 BITS = 2  # STATUS
@@ -93,6 +94,7 @@ class Kernel:
         pairs += [(ROWS[name], kind) for name, kind in zip(wanted, self._kinds, strict=True)]
         sizes = [len(inputs), len(once), len(steps), len(wanted), ROWS["fit"]]
         self._plan = np.array([*sizes, *(x for pair in pairs for x in pair)], np.int64)
+        (self._plan_address,) = addresses([self._plan])
 
     def compute(
         self,
@@ -114,49 +116,54 @@ class Kernel:
         threads : int or None, default 1
             The number of threads, None for as many as there are processors and work.
         """
+        numbers = np.array([inputs[name] for name in self.fixed], np.float64)
         columns = [inputs[name] for name in self.changing]
+        return self.compute_columns(numbers, columns, shape, out, threads)
+
+    def compute_columns(
+        self,
+        numbers: Array,
+        columns: Sequence[Array],
+        shape: tuple[int, ...],
+        out: Mapping[str, Array] | None = None,
+        threads: int | None = 1,
+    ) -> dict[str, Array]:
+        """Return results of the numbers of `fixed` and the columns of `changing`, as `compute`."""
         places = addresses(columns)
         if out is None:
-            results, starts = self.new_arrays(shape)
+            results, starts = self._new_arrays(shape)
         else:
             results, starts = self._check_output(out, shape, places)
         count = math.prod(shape)
-        if self.is_compiled:
-            numbers = np.array([inputs[name] for name in self.fixed])
-            self.run_at(numbers, [*places, *starts], count, threads)
-            return results
-        flat = [array.reshape(-1) for array in results.values()]
-        for start in range(0, count, STRIP):
-            part = slice(start, start + STRIP)
-            values = {name: np.float64(inputs[name]) for name in self.fixed}
-            values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
-            run_formulas(self._steps, values)
-            for to, name, kind in zip(flat, self.wanted, self._kinds, strict=True):
-                to[part] = output(values, name, kind)
+        if _compiled is None or library.is_switched_off():
+            self._run_by_numpy(numbers, columns, [x.reshape(-1) for x in results.values()])
+        else:
+            (first,) = addresses([numbers])
+            places = [*range(first, first + numbers.nbytes, 8), *places, *starts]
+            table = np.array(places, np.int64)
+            work = partial(_compiled.solve, self._plan_address, *addresses([table]))
+            run_in_threads(work, count, threads)
         return results
 
-    @property
-    def is_compiled(self) -> bool:
-        """True if the compiled library computes it."""
-        return _compiled is not None and not library.is_switched_off()
-
-    def run_at(
-        self, numbers: Array, places: Sequence[int], count: int, threads: int | None
+    def _run_by_numpy(
+        self, numbers: Array, columns: Sequence[Array], results: Sequence[Array]
     ) -> None:
-        """Compute ``count`` scenes by the library, given the numbers of the inputs that are
-        `fixed`, and the addresses of those that are `changing` and of results."""
-        (first,) = addresses([numbers])
-        table = np.array([*range(first, first + numbers.nbytes, 8), *places], np.int64)
-        work = partial(_compiled.solve, *addresses([self._plan, table]))
-        run_in_threads(work, count, threads)
+        """Compute results, strip by strip."""
+        for start in range(0, len(results[0]), STRIP):
+            part = slice(start, start + STRIP)
+            values = dict(zip(self.fixed, numbers, strict=True))
+            values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
+            run_formulas(self._steps, values)
+            for to, name, kind in zip(results, self.wanted, self._kinds, strict=True):
+                to[part] = output(values, name, kind)
 
-    def new_arrays(self, shape: tuple[int, ...]) -> tuple[dict[str, Array], list[int]]:
+    def _new_arrays(self, shape: tuple[int, ...]) -> tuple[dict[str, Array], list[int]]:
         """Return arrays for results, rows of one block, and their addresses."""
         block = np.empty((len(self.wanted), *shape))
         (first,) = addresses([block])
-        size = 8 * math.prod(shape)
         arrays: dict[str, Array] = {name: block[k, ...] for k, name in enumerate(self.wanted)}
-        starts = [first + k * size for k in range(len(arrays))]
+        size = 8 * math.prod(shape)
+        starts = [first + k * size for k in range(len(block))]
         if BITS in self._kinds:
             bits = arrays["STATUS"] = np.empty(shape, np.uint16)
             (starts[self._kinds.index(BITS)],) = addresses([bits])
@@ -167,6 +174,7 @@ class Kernel:
     ) -> tuple[dict[str, Array], list[int]]:
         """Return the arrays to write results into, and their addresses. Raises UserError for arrays
         that cannot take them; ``inputs``: the addresses of the columns."""
+        results = {}
         for name, kind in zip(self.wanted, self._kinds, strict=True):
             array: Any = out.get(name)
             dtype: type = np.uint16 if kind == BITS else np.float64
@@ -174,7 +182,7 @@ class Kernel:
             if not is_array or array.shape != shape or array.dtype != dtype:
                 form = f"a contiguous array of {dtype.__name__} of shape {shape}"
                 raise UserError(f"out, {name}: expected {form}")
-        results = {name: out[name] for name in self.wanted}
+            results[name] = array
         starts = addresses(list(results.values()))
         spans = [(at, at + x.nbytes, 1) for at, x in zip(starts, results.values(), strict=True)]
         spans += [(at, at + 8 * math.prod(shape), 0) for at in inputs]
@@ -187,7 +195,7 @@ class Kernel:
 @np.errstate(all="ignore")
 def run_formulas(steps: Sequence[tuple[str, int]], values: dict[str, Any]) -> None:
     """Add what formulas give to values, by numpy; a quantity that is there stays."""
-    is_pivot = np.asarray(values.get("MU", 0.0)) == formulas.PIVOT
+    is_pivot = np.equal(values.get("MU", 0.0), PIVOT)
     for name, guard in steps:
         formula = FORMULAS[name]
         if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):

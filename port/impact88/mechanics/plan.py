@@ -26,7 +26,7 @@ GUARDS = {
     "sliding_spins": OTHERS,
 }
 """Formulas that only pivots need, or only the other scenes."""
-GUARDED_USERS = {"impulse", "final_spins", *GUARDS}
+SELECTING = ("impulse", "final_spins")
 """Formulas that look at the guarded ones' results only where these apply."""
 
 
@@ -130,17 +130,20 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     sources = _sources(known)
     missing = {x: _lacking(x, known) for x in wanted if x not in known and x not in sources}
     quantities = {x for x in wanted if x in sources}
+    everywhere = set(wanted)  # quantities that all scenes need
     inputs: set[str] = set()
     steps: list[tuple[str, int]] = []
     for name in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
-        formula = FORMULAS[name]
-        gives = {x for x in quantities.intersection(formula.gives) if sources.get(x) == name}
-        if gives:
-            users = {step for step, _ in steps if not gives.isdisjoint(FORMULAS[step].takes)}
-            is_guarded = users <= GUARDED_USERS and gives.isdisjoint(wanted) and "MU" in known
-            steps.append((name, GUARDS.get(name, 0) if is_guarded else 0))
-            inputs |= known.intersection(formula.takes)
-            quantities.update(formula.takes)
+        _, takes, gives, _ = FORMULAS[name]
+        used = {x for x in quantities.intersection(gives) if sources.get(x) == name}
+        if used:
+            is_guarded = everywhere.isdisjoint(used) and "MU" in known
+            guard = GUARDS.get(name, 0) if is_guarded else 0
+            if not guard and name not in SELECTING:
+                everywhere.update(takes)
+            steps.append((name, guard))
+            inputs |= known.intersection(takes)
+            quantities.update(takes)
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 

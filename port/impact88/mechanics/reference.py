@@ -12,13 +12,12 @@ from typing import Any
 from .. import errors
 from ..decimals import exact
 from ..errors import UserError
-from ..names import FINAL_STATE, VELOCITIES
+from ..names import FINAL_STATE, PIVOT, VELOCITIES
 
 DIGITS = 50  # correct digits: three times a double's
 WRITTEN = 30  # digits of a text; the chapter's worked cases have as many
-GUARD = 15  # working digits beyond, besides those for the spread of a scene's numbers
-SPINS = ("WA", "WB")
-UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM")  # by point masses
+GUARD = 15  # further working digits, to which those for the spread of a scene's numbers are added
+UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM", "WA", "WB")  # by point masses
 
 Number = Any  # mpmath.mpf, which has no usable type
 
@@ -127,10 +126,11 @@ def _solve_three(rows: Sequence[Sequence[Number]], right: Sequence[Number]) -> l
     return [_dot(right, cross) / divisor for cross in crosses] if divisor else None
 
 
-def _results(g: dict[str, Number]) -> dict[str, Number]:
+def _results(scene: dict[str, Number]) -> dict[str, Number]:
     """Return the results of a scene's numbers."""
     mpmath = _mpmath()
-    is_point, is_pivot = g.get("M", 6) == 4, g["MU"] == -10
+    g = scene
+    is_point, is_pivot = g.get("M", 6) == 4, g["MU"] == PIVOT
     if is_point:
         g = {**g, **dict.fromkeys(UNUSED, mpmath.mpf(0)), "IA": mpmath.mpf(1), "IB": mpmath.mpf(1)}
     s, c = _direction(g["GA"])
@@ -146,7 +146,7 @@ def _results(g: dict[str, Number]) -> dict[str, Number]:
     ]
     masses = [g[name] for name in ("MA", "MA", "IA", "MB", "MB", "IB")]
     changes = [[x / m for x, m in zip(row, masses, strict=True)] for row in relative]
-    before = [0 if is_point and name in SPINS else g[name] for name in VELOCITIES]
+    before = [g[name] for name in VELOCITIES]
     gn, gt, gw = (_dot(row, before) for row in relative)
     mu = g["MU"] if is_pivot or gt <= 0 else -g["MU"]
 
@@ -178,7 +178,7 @@ def _results(g: dict[str, Number]) -> dict[str, Number]:
         pairs = zip(masses, (ax, ay, wa, bx, by, wb), strict=True)
         f[energy] = mpmath.fsum(m * v * v for m, v in pairs if v) / 2  # infinite bodies rest
     if is_point:
-        f |= {"WAF": g["WA"], "WBF": g["WB"]}
+        f |= {"WAF": scene["WA"], "WBF": scene["WB"]}
     if f["KI"]:
         f["LOSS"] = 100 * lost / f["KI"]
     if no_slip and no_slip[0]:

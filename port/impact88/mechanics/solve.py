@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
-from .kernel import Kernel, addresses, run_formulas
+from .kernel import Kernel, run_formulas
 from .plan import COMPILED, FORMULAS, QUANTITIES, plan
 
 Array = NDArray[Any]
@@ -275,15 +275,9 @@ class Prepared:
         if not block.flags.carray:
             block = block.copy()
         shape = block.shape[1:]
-        if self._kernel.is_compiled:
-            arrays, starts = self._kernel.new_arrays(shape)
-            (first,) = addresses([block])
-            size = 8 * math.prod(shape)
-            places = [first + row * size for row in self._rows] + starts
-            self._kernel.run_at(self._numbers, places, size // 8, 1)
-        else:
-            rows = dict(zip(self.names, block.reshape(len(block), -1), strict=True))
-            arrays = self._kernel.compute(self._scene | rows, shape)
+        rows = [*block.reshape(len(block), -1)]
+        columns = [rows[k] for k in self._rows]
+        arrays = self._kernel.compute_columns(self._numbers, columns, shape)
         return arrays if shape else _numbers(arrays)
 
     def _broadcast_rows(self, values: Any) -> Array:
@@ -313,21 +307,20 @@ def _evaluation(
     quantities lack that do not follow."""
     check_names(wanted, QUANTITIES, "quantity of an impact")
     steps, _, lacking = plan(wanted, known)
-    first: list[Step] = []
+    compiled: list[Step] = []
     following: list[Step] = []
-    later: set[str] = set()
-    needed = set(wanted)
+    by_numpy: set[str] = set()
     for step in steps:
-        formula = FORMULAS[step[0]]
-        is_compiled = formula.name in COMPILED and known.isdisjoint(formula.gives)
-        if is_compiled and later.isdisjoint(formula.takes):
-            first.append(step)
+        _, takes, gives, _ = formula = FORMULAS[step[0]]
+        is_compiled = formula.name in COMPILED and known.isdisjoint(gives)
+        if is_compiled and by_numpy.isdisjoint(takes):
+            compiled.append(step)
         else:
             following.append(step)
-            later.update(formula.gives)
-            needed.update(formula.takes)
-    results = [x for name, _ in first for x in FORMULAS[name].gives if x in needed]
-    return Kernel(first, results, varying, False), following, lacking
+            by_numpy.update(gives)
+    needed = {*wanted, *(x for name, _ in following for x in FORMULAS[name].takes)}
+    results = [x for name, _ in compiled for x in FORMULAS[name].gives if x in needed]
+    return Kernel(compiled, results, varying, False), following, lacking
 
 
 @lru_cache(maxsize=512)

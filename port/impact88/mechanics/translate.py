@@ -1,7 +1,7 @@
 """Print the functions of `formulas` as C, each with a loop over a strip of scenes.
 
 It is run when the package is built: ``python -m impact88.mechanics.translate`` writes to standard
-output what `machine.c` includes as ``formulas.h``. Expressions are C as they are written (`where`
+output what `kernel.c` includes as ``formulas.h``. Expressions are C as they are written (`where`
 is a macro there) and keep the order of their operations, so that the compiled library has numpy's
 bits.
 """
@@ -9,16 +9,9 @@ bits.
 import ast
 import hashlib
 
+from ..names import PIVOT
+from ..status import Status
 from .plan import COLUMNS, COMPILED, FUNCTIONS, ROWS, SOURCE, Formula
-
-
-def assignment(name: str, value: ast.expr, variables: set[str]) -> str:
-    """Return the assignment of a value in C, with a type where the name is new."""
-    operator = getattr(value, "op", value)
-    is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
-    kind = "" if name in variables else "int64_t " if is_condition else "double "
-    variables.add(name)
-    return f"{kind}{name} = {ast.unparse(value)};"
 
 
 def statements(formula: Formula) -> list[str]:
@@ -28,15 +21,15 @@ def statements(formula: Formula) -> list[str]:
     for line in formula.tree.body:
         match line:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                lines.append(assignment(name, value, variables))
-            case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Tuple(elts=values)):
-                for target, value in zip(targets, values, strict=True):
-                    lines.append(assignment(ast.unparse(target), value, variables))
-            case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Call() as call):
-                names = [ast.unparse(target) for target in targets]
-                places = ", ".join(f"&{name}" for name in names)
-                lines.append(f"double {', '.join(names)};")
-                lines.append(f"{ast.unparse(call).removesuffix(')')}, {places});")
+                operator = getattr(value, "op", value)
+                is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
+                kind = "int64_t " if is_condition else "double "
+                lines.append(f"{kind * (name not in variables)}{ast.unparse(line)};")
+                variables.add(name)
+            case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Call() as call):
+                places = [f"&{ast.unparse(name)}" for name in names]
+                lines.append(f"double {', '.join(map(ast.unparse, names))};")
+                lines.append(f"{ast.unparse(call).removesuffix(')')}, {', '.join(places)});")
     return lines
 
 
@@ -60,14 +53,16 @@ def loop_text(formula: Formula) -> str:
 
 def header() -> str:
     """Return the text of ``formulas.h``: constants, functions, loops and the table of loops."""
+    numbers = {"PIVOT": PIVOT, "COLUMNS": len(COLUMNS), "ROWS": len(ROWS), "AT_MU": ROWS["MU"]}
     constants = [line for line in SOURCE.body if isinstance(line, ast.Assign)]
+    bits = " ".join(f"double {bit.name};" for bit in Status)
+    values = ", ".join(f"{bit:d}" for bit in Status)
     table = ", ".join(f"each_{name}" for name in COMPILED)
     parts = [
         f'#define FORMULAS "{digest()}"',
+        *(f"#define {name} ({number})" for name, number in numbers.items()),
         *(f"#define {ast.unparse(x.targets[0])} ({ast.unparse(x.value)})" for x in constants),
-        f"#define COLUMNS {len(COLUMNS)}",
-        f"#define ROWS {len(ROWS)}",
-        f"#define AT_MU {ROWS['MU']}",
+        f"static const struct {{{bits}}} Status = {{{values}}};",
         *map(function_text, FUNCTIONS.values()),
         *map(loop_text, COMPILED.values()),
         f"static void (*const loops[])(const double *const *, ROW *) = {{{table}}};",
@@ -77,7 +72,9 @@ def header() -> str:
 
 def digest() -> str:
     """Return a digest of the functions: a library that has it was built from these."""
-    return hashlib.sha256((ast.unparse(SOURCE) + str(ROWS)).encode()).hexdigest()[:16]
+    return hashlib.sha256(
+        (ast.unparse(SOURCE) + str([PIVOT, *Status, *ROWS])).encode()
+    ).hexdigest()[:16]
 
 
 if __name__ == "__main__":

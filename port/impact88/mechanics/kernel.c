@@ -71,7 +71,7 @@ void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
             else if (at == begin) copy[0] = *from;
             for (int64_t i = varies ? count : 1; i < STRIP; i++) copy[i] = copy[0];
         }
-        if (in[AT_MU]) EACH pivots += in[AT_MU][i] == -10.0;
+        if (in[AT_MU]) EACH pivots += in[AT_MU][i] == PIVOT;
         for (int64_t k = at == begin ? 0 : plan[1]; k < plan[2]; k++) {
             int64_t guard = step[2 * k + 1];
             if (guard == 1 ? !pivots : guard == 2 && pivots == STRIP) continue;
@@ -84,7 +84,7 @@ void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
             double last[STRIP];
             void *to = count == STRIP && kind < 3 ? (void *)there : last;
             if (kind == 2) finish_bits(x, fit, to);
-            else if (kind < 2) finish(x, fit, to, kind ? INFINITY : 1.7976931348623157e308);
+            else if (kind < 2) finish(x, fit, to, kind ? INFINITY : LARGEST);
             if (to == last) memcpy(there, kind < 3 ? to : x, (size_t)(count * size));
         }
     }
