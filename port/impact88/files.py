@@ -5,7 +5,6 @@ Every system error becomes a UserError that names the file.
 
 from __future__ import annotations
 
-import codecs
 import errno
 import io
 import os
@@ -23,13 +22,6 @@ MAX_FILE_BYTES = 100_000_000  # bounds memory; thousands of times the usual size
 LONGEST_LINE = 1_000_000  # characters; bounds memory, rows have hundreds
 ESCAPED = "backslashreplace"
 """Error handler of text streams: lone surrogates are written as \\uXXXX, as in JSON."""
-
-_BYTE_ORDER_MARKS = (
-    (codecs.BOM_UTF8, "utf-8-sig"),
-    (codecs.BOM_UTF16_LE, "utf-16"),
-    (codecs.BOM_UTF16_BE, "utf-16"),
-)
-
 
 _PICTURES = "; pictures are read as PNG, JPEG, TIFF or PDF: save it as one of these"
 CONTENTS = (
@@ -75,24 +67,17 @@ def display_name(path: str) -> str:
     return "standard input" if path == "-" else path
 
 
-def encoding_of(start: bytes) -> str:
-    """Return the encoding by a text's first bytes: UTF-16 with its byte-order mark, else UTF-8."""
-    return next((name for mark, name in _BYTE_ORDER_MARKS if start.startswith(mark)), "utf-8")
-
-
 def decode(data: bytes, where: str) -> str:
     """Return the text of UTF-8 bytes, or UTF-16 with a byte-order mark; line ends become newlines.
     Raises UserError, naming ``where`` and the byte, if it is neither."""
     check_text(data, where)
-    encoding = encoding_of(data)
+    encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
         text = data.decode(encoding)
     except UnicodeDecodeError as error:
-        raise UserError(
-            f"byte {error.start} is not {encoding[:6].rstrip('-').upper()} text; "
-            "expected a text file",
-            where,
-        ) from None
+        name = encoding.removesuffix("-sig").upper()
+        message = f"byte {error.start} is not {name} text; expected a text file"
+        raise UserError(message, where) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -150,8 +135,7 @@ class Source(io.RawIOBase):
         self._inner: Any = None
         self._keep = path == "-"
         with _naming(self.name, "read"):
-            self._inner = sys.stdin.buffer if self._keep else io.FileIO(path)
-        self._fill = getattr(self._inner, "readinto1", self._inner.readinto)
+            self._inner = sys.stdin.buffer if self._keep else io.BufferedReader(io.FileIO(path))
 
     @property
     def extent(self) -> tuple[int | None, Callable[[], int]]:
@@ -168,7 +152,7 @@ class Source(io.RawIOBase):
     def readinto(self, buffer: Any) -> int:
         """Read into ``buffer`` and return the number of bytes, 0 at the end. Raises UserError."""
         with _naming(self.name, "read"):
-            count: int = self._fill(buffer) or 0
+            count: int = self._inner.readinto1(buffer)
         self.count += count
         return count
 
@@ -204,40 +188,23 @@ def typed_line() -> str | None:
     UserError if it is not text or too long."""
     sys.stdout.flush()
     with _naming(display_name("-"), "read"):
-        try:
-            line = sys.stdin.readline(LONGEST_LINE)
-        except UnicodeDecodeError as error:
-            message = f"contains bytes that are not {error.encoding} text"
-            raise UserError(message, display_name("-")) from None
+        line = sys.stdin.readline(LONGEST_LINE)
     if len(line) == LONGEST_LINE and not line.endswith("\n"):
         raise UserError(f"has a line longer than {LONGEST_LINE:,} characters", display_name("-"))
     return line.rstrip("\r\n") if line else None
 
 
-class _Sink(io.FileIO):
-    """A file being written, whose write errors are UserErrors naming it."""
-
-    target = ""
-
-    def write(self, data: Any) -> int:
-        with _naming(self.target, "written"):
-            return super().write(data)
-
-
-def _sink(file: str, target: str, mode: str, private: bool) -> IO[Any]:
-    """Open ``file`` for writing, named ``target`` in messages; ``private``: it must not exist yet,
-    and only its owner may access it."""
+def _open_output(path: str, mode: str, private: bool) -> IO[Any]:
+    """Open a file for writing; ``private``: it must not exist yet, and only its owner may access
+    it."""
 
     def opener(path: str, flags: int) -> int:
         return os.open(path, flags | os.O_EXCL, 0o600)
 
-    with _naming(target, "written"):
-        raw = _Sink(file, "w", opener=opener if private else None)
-    raw.target = target
-    stream = io.BufferedWriter(raw)
+    binary = io.BufferedWriter(io.FileIO(path, "w", opener=opener if private else None))
     if "b" in mode:
-        return stream
-    return io.TextIOWrapper(stream, encoding="utf-8", errors=ESCAPED, newline="\n")
+        return binary
+    return io.TextIOWrapper(binary, encoding="utf-8", errors=ESCAPED, newline="\n")
 
 
 @contextmanager
@@ -248,28 +215,28 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     the block raises, or the process is terminated, the temporary file is removed and
     ``path`` is unchanged. A path that is not a regular file (a terminal, a pipe, /dev/null) is
     written directly. Raises UserError if the place cannot be written to, the disk is full, or the
-    file is read-only."""
+    file is read-only: system errors in the block are errors of writing, because all reading raises
+    UserError."""
     target, mode_bits = _target(path)
-    if os.path.exists(target) and not os.path.isfile(target):
-        with _sink(target, path, mode, False) as file:
-            yield file
-        return
+    is_direct = os.path.exists(target) and not os.path.isfile(target)
     folder, name = os.path.split(target)
+    # the name is chosen before the file exists, so that a signal at any time removes it; it is
     # short enough for the limit of 255 bytes
     temporary = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
-    # the name is chosen before the file exists, so that a signal at any time removes it
     try:
-        with _sink(temporary, path, mode, True) as file:
+        with _open_output(target if is_direct else temporary, mode, not is_direct) as file:
             yield file
             file.flush()
-            with _naming(path, "written"):
+            if not is_direct:
                 _settle(file.fileno())
-        with _naming(path, "written"):
+        if not is_direct:
             os.chmod(temporary, mode_bits)
             os.replace(temporary, target)
-    except BaseException:
+    except BaseException as error:
         with suppress(OSError):
             os.unlink(temporary)
+        if isinstance(error, OSError) and not isinstance(error, BrokenPipeError):
+            raise UserError(f"cannot be written: {error.strerror or error}", path) from None
         raise
 
 
@@ -284,7 +251,7 @@ def write_folder(folder: str, files: Mapping[str, bytes]) -> None:
 
 
 def _target(path: str) -> tuple[str, int]:
-    """Return the real path behind links, and the mode of the file there or of a new one. Raises
+    """Return the real path, links resolved,, and the mode of the file there or of a new one. Raises
     UserError for a folder and for a read-only file."""
     with _naming(path, "written"):
         try:
@@ -343,9 +310,8 @@ def packaged_bytes(package: str, name: str) -> bytes:
     """Return the bytes of a data file installed with this package, such as legacy's listing."""
     from importlib import import_module  # pkgutil, which has this, takes 5 ms to import
 
-    module: Any = import_module(package)
-    data: bytes = module.__loader__.get_data(os.path.join(os.path.dirname(module.__file__), name))
-    return data
+    (folder,) = import_module(package).__path__
+    return read_bytes(os.path.join(folder, name))
 
 
 def packaged_text(package: str, name: str) -> str:

@@ -11,12 +11,11 @@ Each package that has C sources asks for the library with the digest of its own 
 import ctypes
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.machinery import EXTENSION_SUFFIXES
 from typing import Any
 
 SWITCH = "IMPACT88_ACCELERATED"  # environment variable: 0 leaves everything to numpy
-NAME = "_compiled"
 
 
 def _load() -> Any:
@@ -25,13 +24,10 @@ def _load() -> Any:
         return None
     folder = os.path.dirname(__file__)  # pathlib takes 4 ms to import
     for suffix in (*EXTENSION_SUFFIXES, ".abi3.so", ".so"):  # free-threaded Pythons lack abi3
-        path = os.path.join(folder, NAME + suffix)
-        if os.path.exists(path):
-            try:
-                loaded = ctypes.CDLL(path)
-                loaded.instructions.restype = ctypes.c_char_p
-            except (OSError, AttributeError):  # built for another platform or from older sources
-                continue
+        # absent, built for another platform, or from older sources
+        with suppress(OSError, AttributeError):
+            loaded = ctypes.CDLL(os.path.join(folder, "_compiled" + suffix))
+            loaded.instructions.restype = ctypes.c_char_p
             return loaded
     return None
 
@@ -59,11 +55,8 @@ def loaded(digest_function: str, digest: str) -> Any:
         None where there is no library, where it was built from other sources, or where it is
         switched off (`switched_off`).
     """
-    if _library is None:
-        return None
-    try:
-        ask = getattr(_library, digest_function)
-    except AttributeError:
+    ask = getattr(_library, digest_function, None)
+    if ask is None:
         return None
     ask.restype = ctypes.c_char_p
     return _library if ask().decode() == digest else None

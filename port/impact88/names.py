@@ -13,6 +13,7 @@ rule ("mass·length²"), of which a system of units (`cases.units`) makes a unit
 
 from collections import namedtuple
 from collections.abc import Collection, Iterable, Sequence
+from itertools import starmap
 
 from .errors import UserError
 
@@ -40,7 +41,7 @@ class Quantity(namedtuple("Quantity", "name symbol meaning unit line", defaults=
 
 def _table(*rows: tuple[str | int, ...]) -> dict[str, Quantity]:
     """Return rows as quantities by name."""
-    return {quantity.name: quantity for quantity in (Quantity(*row) for row in rows)}
+    return {quantity.name: quantity for quantity in starmap(Quantity, rows)}
 
 
 # unit rules
