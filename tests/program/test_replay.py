@@ -15,8 +15,9 @@ from impact88.apple.captured import memory_contents, result
 from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.program import kernel
+from impact88.program.batches import BLOCK
 from impact88.program.kernel import Program, row_type
-from impact88.program.replay import BLOCK, COMPUTED, PRINTED, replay
+from impact88.program.replay import COMPUTED, PRINTED, replay
 from impact88.program.run import run
 from impact88.program.scene import sample
 

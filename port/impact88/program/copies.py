@@ -150,10 +150,10 @@ class ListingCopy:
         UserError
             For columns that cannot be used, and as `run`.
         """
-        from . import kernel, replay  # numpy is needed for many scenes only
+        from . import batches, kernel  # numpy is needed for many scenes only
 
         program = kernel.Program(self.steps, list(self._variables)) if self.steps else None
-        return replay.run_scenes(
+        return batches.run_scenes(
             program, columns, lambda _, scene: self.run(scene).printout, (0, 0), pages=True
         )[1]
 
