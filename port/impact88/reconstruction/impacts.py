@@ -16,7 +16,7 @@ from ..mechanics.formulas import sine_and_cosine
 from ..mechanics.inverse import complete
 from ..mechanics.solve import evaluate
 from ..names import COEFFICIENTS as COEFFICIENTS
-from ..names import FINAL_STATE, VELOCITIES
+from ..names import FINAL_STATE, RESULTS, VELOCITIES
 from ..names import IMPULSES as IMPULSES
 from ..names import PIVOT as PIVOT
 
@@ -28,14 +28,15 @@ VEHICLES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA")
 SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 FORCES = ("PDOFA", "PDOFB")
-EVERY = (
+_ORDERED = (
     *BEFORE,
     *AFTER,
     *"SA HA SB HB SAF HAF SBF HBF E MUP EM PN PT PM P DVA DVB DVAF DVAR DVBF DVBR".split(),
     *"PDOFA PDOFB VC VS KI KF EL LOSS DT MUC RR0 ELN ELT ELM EESA EESB".split(),
     *"XA YA XB YB XAF YAF XBF YBF CAX CAY CBX CBY".split(),
 )
-"""Results of an impact, in the order shown."""
+EVERY = (*_ORDERED, *(name for name in RESULTS if name not in (*_ORDERED, "COND", "STATUS")))
+"""Results of an impact, in the order shown; those of `names` without a place here come last."""
 
 
 class Impacts:

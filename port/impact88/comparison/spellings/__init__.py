@@ -1,4 +1,4 @@
-"""The planar impact as plain Python statements, one quantity each, its subject behind the "#".
+"""The planar impact as plain Python statements, one quantity each, its subject after the "#".
 
 A spelling is a way in which programs are written. It consists of the statements of ``reading``,
 its own, and those of ``results``. Statements whose names begin with "eq" are equations, linear in
@@ -10,7 +10,8 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-from ...names import FINAL_VELOCITIES, SCENE
+from ...mechanics.plan import GIVERS
+from ...names import FINAL_VELOCITIES, RESULTS, SCENE
 
 NAMES = ("impulses", "frame", "equations", "bodies", "trial", "ratio")
 COLUMNS = tuple(SCENE)
@@ -29,8 +30,8 @@ class Statement(NamedTuple):
 class Spelling(NamedTuple):
     """Statements of a way of computing the impact.
 
-    ``own`` is the place of the first statement behind the reading, ``results`` that of the first
-    result; ``unknowns`` are solved for behind the last of the ``equations``.
+    ``own`` is the place of the first statement after the reading, ``results`` that of the first
+    result; ``unknowns`` are solved for after the last of the ``equations``.
     """
 
     statements: tuple[Statement, ...]
@@ -71,12 +72,28 @@ def _read(name: str) -> tuple[list[Statement], tuple[str, ...], tuple[str, ...]]
     return statements, tuple(equations), unknowns
 
 
+def _read_results() -> list[Statement]:
+    """Return the statements of ``results``, and of results that are not there those of their
+    formulas, which must take nothing but columns and results."""
+    statements, _, _ = _read("results")
+    written = {"COND", "STATUS", *VELOCITIES, *(statement.target for statement in statements)}
+    for name in (name for name in RESULTS if name not in written):
+        formula = GIVERS[name]
+        assert {*formula.takes} <= {*SCENE, *RESULTS}, f"{name}: write it in results.txt"
+        for line in formula.tree.body:
+            if isinstance(line, ast.Assign):
+                text = ast.unparse(line.value)
+                target = ast.unparse(line.targets[0])
+                statements.append(Statement(target, text, RESULTS[name].meaning, names_in(text)))
+    return statements
+
+
 @cache
 def spelling(name: str) -> Spelling:
     """Return the spelling of a name in `NAMES`."""
     reading, _, _ = _read("reading")
     own, equations, unknowns = _read(name)
-    results, _, _ = _read("results")
+    results = _read_results()
     targets = {statement.target for statement in (*reading, *own)}
     results = [s for s in results if s.target != "MUC" or "muc" in targets]
     statements = (*reading, *own, *results)
