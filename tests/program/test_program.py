@@ -74,18 +74,6 @@ def test_replies_are_those_typed_in_1988(number: int, name: str) -> None:
     assert len(keys) == 2
 
 
-@pytest.mark.parametrize(("number", "name"), PUBLISHED)
-def test_comparison_with_the_published_text_sees_one_digit(number: int, name: str) -> None:
-    """Every digit of the published text counts: changing any of them fails the comparison."""
-    numbers = results(run(sample(number)).printout)
-    text = published_text(name)
-    start = text.index("MA=")
-    for match in re.finditer(r"\d", text[start:]):
-        at = start + match.start()
-        alteration = text[:at] + str((int(match[0]) + 1) % 10) + text[at + 1 :]
-        assert results(alteration) != numbers
-
-
 @pytest.mark.parametrize("number", [1, 2])
 def test_double_precision_misses_two_published_digits(number: int) -> None:
     """XB= 14.51 and YB= 25.14 are the arithmetic's, not the statements'."""

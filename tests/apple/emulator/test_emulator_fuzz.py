@@ -7,7 +7,7 @@ import os
 import pytest
 from emulator_fuzz import Cases, survive
 
-CASES = int(os.environ.get("IMPACT88_FUZZ", "0")) or 200
+CASES = int(os.environ.get("IMPACT88_FUZZ", "0")) or 120
 
 
 @pytest.mark.captures

@@ -158,7 +158,7 @@ def test_what_a_person_may_type_loads_as_it_was(program: dict[int, list[str]]) -
 
 
 def test_only_what_has_no_other_reading_is_listed() -> None:
-    """The blank behind REM and DATA is LIST's in a listing and the text's elsewhere."""
+    """The blank after REM and DATA is LIST's in a listing and the text's elsewhere."""
     assert read_program("10  REM X").lines == [(10, b"\xb2X")]
     assert read_program("10 REM X").lines == [(10, b"\xb2 X")]
     assert read_program("10  REM X\n20 PRINT").lines[0] == (10, b"\xb2 X")
@@ -261,7 +261,7 @@ def test_a_tokenised_file_keeps_its_order_and_says_what_is_left_out() -> None:
     machine = machine_with("10 A=1\n20 B=2")
     data = image(machine)
     assert read_program(data + b"\x60\x60").remarks == [
-        "2 bytes behind the program's last line, such as machine code, are left out"
+        "2 bytes after the program's last line, such as machine code, are left out"
     ]
     disorder = data.replace(b"\x0a\0A", b"\x1e\0A")  # 30 before 20, as no one can type
     machine.load(disorder)
@@ -276,7 +276,7 @@ def test_a_tokenised_file_keeps_its_order_and_says_what_is_left_out() -> None:
     [
         (lambda data: data[:-2], ""),
         (lambda data: data[:-1], ""),
-        (lambda data: data[:-2] + b"\xff\0\1", "1 bytes behind"),
+        (lambda data: data[:-2] + b"\xff\0\1", "1 bytes after"),
         (lambda data: data.replace(b"\x09\x08", b"\x99\x66"), "1 of 3 links"),
         (lambda data: data[:-3], ""),
     ],
@@ -286,7 +286,7 @@ def test_a_tokenised_file_keeps_its_order_and_says_what_is_left_out() -> None:
 def test_a_tokenised_program_is_walked_as_the_rom_does(
     change: Callable[[bytes], bytes], remark: str, dos: bool
 ) -> None:
-    """It makes the links anew, and stops at a zero high byte alone; behind the file is nothing."""
+    """It makes the links anew, and stops at a zero high byte alone; nothing follows the file."""
     text = "10 A=1\n20 B=A+2\n30 PRINT B"
     data = change(image(machine_with(text)))
     program = read_program(len(data).to_bytes(2, "little") + data if dos else data)
