@@ -118,7 +118,7 @@ def _run(apple: Applesoft) -> int:
             "the input ended while the program asked for more; expected a line for every INPUT"
         ) from None
     if error:
-        print()  # the ROM leaves the cursor behind the message
+        print()  # the ROM leaves the cursor after the message
     if apple.machine.broken:
         raise KeyboardInterrupt
     return int(error is not None)

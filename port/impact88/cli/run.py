@@ -49,7 +49,7 @@ def main(args: Args) -> int:
     else:
         record = _ask(arithmetic)
     if record.error and sys.stdout.isatty():
-        print()  # the ROM leaves the cursor behind the message
+        print()  # the ROM leaves the cursor after the message
     return int(bool(record.error))
 
 

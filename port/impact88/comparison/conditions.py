@@ -27,7 +27,7 @@ QUANTITIES = {
     "MA / MB": "MA/MB",
     "the number of the row": "row",
 }
-"""Quantities of a condition besides the columns, in names of ``spellings/impulses.py``."""
+"""Further quantities of a condition, in names of ``spellings/impulses.py``."""
 SPECIAL_VALUES = {"MU": (-10.0,), "M": (4.0,)}
 RELATIONS: dict[str, Any] = {
     "above": np.greater,

@@ -24,7 +24,7 @@ MAX_SPREAD = 1e-2  # of the constants that the rows give, relative; the digits t
 EXACT_SPREAD = 1e-9  # up to which the constant has all its digits
 SHORT_TOLERANCE = 1e-12  # relative distance at which a constant has nine digits or fewer
 KNOWN_TOLERANCE = 4e-7  # relative distance at which a constant is a known one; 3.14159 is no 1
-RANK = 5  # behind the edits without a constant
+RANK = 5  # after the edits without a constant
 RANK_KNOWN = 1
 GROUPS = {
     "<": "GA,PA,PB,TA,TB PA,PB TA,TB DA,DB MA,MB,IA,IB MA,MB IA,IB UX,UY,VX,VY UX,UY VX,VY WA,WB",

@@ -17,7 +17,7 @@ _NUMBER = re.compile(r"[-+]?(\d*)\.?(\d*)(?:[eEdD]([-+]?\d+))?")
 
 
 def spread(values: NDArray[Any], count: int) -> NDArray[Any]:
-    """Return at most so many values of an array, evenly spread."""
+    """Return evenly spread values of an array, at most a given number."""
     return values.take(np.linspace(0, values.size - 1, min(count, values.size)).astype(int))
 
 

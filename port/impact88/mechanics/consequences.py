@@ -1,4 +1,4 @@
-"""Quantities of an impact besides the results: speeds, courses, directions of the force; and
+"""Further quantities of an impact: speeds, courses, directions of the force; and
 results that follow from others where the scene is not known as a whole.
 
 Functions have the form of those in `formulas`: parameters and returned names are the data flow.

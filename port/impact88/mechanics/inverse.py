@@ -126,7 +126,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
 
 
 def _stack(rows: Sequence[Sequence[ArrayLike]], shape: tuple[int, ...]) -> Floats:
-    """Return rows of numbers and arrays as one array, with the shape of the impacts behind."""
+    """Return rows of numbers and arrays as one array, with the shape of the impacts last."""
     stack = np.empty((len(rows), len(rows[0]), *shape))
     for k, row in enumerate(rows):
         for j, x in enumerate(row):

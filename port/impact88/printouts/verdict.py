@@ -285,7 +285,7 @@ class Comparison:
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def is_cut(self, name: str, printed: str) -> bool:
-        """Return True for the beginning of a number at the end of its line, or its end behind 0."""
+        """Return True for the beginning of a number at the end of its line, or its end after 0."""
         read = self.reading.slots[name].text
         if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
             return True

@@ -5,7 +5,7 @@
     m       40-bit mantissa. Top 32 bits: the mantissa proper, its top bit always set;
             low 8 bits: the *extension*
     s       sign, 1 for negative
-    zero    e = 0, and here always (0, 0, 0): the ROM leaves odd mantissas behind, which count
+    zero    e = 0, and here always (0, 0, 0): the ROM leaves odd mantissas, which count
             for nothing
 
 A *stored* value has five bytes and no extension; a value *in flight*, in the accumulator (FAC), has

@@ -376,7 +376,7 @@ class Expressions(Variables):
         return integer(text[0])
 
     def _val(self, fac: Number, sp: int) -> Number:
-        """VAL: return the number of a string. After OVERFLOW the zero written behind it stays."""
+        """VAL: return the number of a string. After OVERFLOW the zero written after it stays."""
         address = self.word(descriptor(fac) + 1) if self.valtyp else 0
         text = self._text(fac, sp)
         if not text:

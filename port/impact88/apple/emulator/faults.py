@@ -1,7 +1,7 @@
 """Errors with the 6502's stack pointer at which the ROM detects them, where ONERR leaves it.
 
 ``sp - n`` in the statements: the ROM has n more bytes on the stack there than before the statement,
-2 for the return to NEWSTT and 2 for each JSR, besides what it pushed; PEEK (223) shows it."""
+2 for the return to NEWSTT and 2 for each JSR, and what it pushed; PEEK (223) shows it."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar

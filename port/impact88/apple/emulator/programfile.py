@@ -35,7 +35,7 @@ INDENT = 5  # columns by which LIST indents a continued line
 SCREEN_WIDTH = 40
 WIDTHS = (WRAP_COLUMN, SCREEN_WIDTH, 80)
 """Usual row lengths if LIST does not wrap lines: POKE 33,33, screen, printer."""
-MAX_LOST_BLANKS = 2  # at the end of a full row; two keywords leave so many
+MAX_LOST_BLANKS = 2  # at the end of a full row; two keywords leave two
 MAX_LISTED_TOKENS = 255  # in a line of LIST's output; no line so long can be typed
 MAX_KEYWORD_PIECE = 12  # characters at the end of a text in which a keyword may be cut off
 LINE_HEADER = 4  # bytes of a line before its tokens: the next line's address, and its number
@@ -419,7 +419,7 @@ def _typed_lines(rows: Sequence[Row]) -> list[Line]:
 
 class _Image(NamedTuple):
     """A tokenised file as the ROM walks it: its lines, the number of links that were wrong,
-    whether it ends with two zeros, and what is behind the program."""
+    whether it ends with two zeros, and what follows the program."""
 
     lines: list[Line]
     wrong_links: int
@@ -452,7 +452,7 @@ def _read_image(data: bytes) -> Program | None:
         )
     if best.extra:
         remarks.append(
-            f"{len(best.extra)} bytes behind the program's last line, such as machine code, "
+            f"{len(best.extra)} bytes after the program's last line, such as machine code, "
             "are left out"
         )
     return Program(best.lines, remarks)
@@ -460,7 +460,7 @@ def _read_image(data: bytes) -> Program | None:
 
 def _walk(image: bytes) -> _Image:
     """Walk a program as $D4F2 does: links are not looked at but for a zero high byte, which ends
-    it, as does the memory behind the file, which holds zeros."""
+    it, as does the memory after the file, which holds zeros."""
     memory = image + bytes(LONGEST_LINE)
     lines: list[Line] = []
     links: list[int] = []

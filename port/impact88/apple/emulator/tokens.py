@@ -149,7 +149,7 @@ def list_text(byte: int) -> str:
 
 
 def following_line(text: bytes | bytearray, line: int) -> int:
-    """Return the address behind the line that begins at ``line``, as $D4F2 finds it; 0 where the
+    """Return the address after the line that begins at ``line``, as $D4F2 finds it; 0 where the
     ROM would search without end.
 
     The search for the line's zero begins at its second token, and an index of one byte counts: a
