@@ -187,9 +187,8 @@ def prepared(
     Returns
     -------
     Prepared
-        Called with an array whose rows are the columns, ``names`` by n, or with a number or an
-        array for each name: the results by name. It can be called by several threads at a time, and
-        be sent to other processes.
+        Called with an array whose rows are the columns, ``names`` by n: the results by name. It can
+        be called by several threads at a time, and be sent to other processes.
 
     Raises
     ------
@@ -253,7 +252,7 @@ class Prepared:
         Parameters
         ----------
         values : array_like
-            A row for each of ``names``: numbers, or arrays of any one shape.
+            A row for each of ``names``: numbers, or arrays of one shape.
 
         Returns
         -------
@@ -267,9 +266,10 @@ class Prepared:
         """
         try:
             block = np.asarray(values, np.float64)
+            is_block = not surplus and block.shape[:1] == (len(self.names),)
         except (TypeError, ValueError):
-            block = self._broadcast_rows(values)
-        if surplus or block.shape[:1] != (len(self.names),):
+            is_block = False
+        if not is_block:
             names = " ".join(self.names)
             raise UserError(f"expected one array with a row for each of {names}")
         if not block.flags.carray:
@@ -279,13 +279,6 @@ class Prepared:
         columns = [rows[k] for k in self._rows]
         arrays = self._kernel.compute_columns(self._numbers, columns, shape)
         return arrays if shape else _numbers(arrays)
-
-    def _broadcast_rows(self, values: Any) -> Array:
-        """Return numbers, arrays and texts as rows of one shape. Raises UserError."""
-        rows = zip(self.names, values, strict=False)
-        columns = {name: _as_doubles(name, value) for name, value in rows}
-        shape, _, _ = _flatten(columns)
-        return np.array([np.broadcast_to(x, shape) for x in columns.values()])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes an equal function of: no addresses."""
