@@ -136,14 +136,14 @@ def _results(scene: dict[str, Number]) -> dict[str, Number]:
     s, c = _direction(g["GA"])
     sine_a, cosine_a = _direction(g["TA"] + g["PA"])
     sine_b, cosine_b = _direction(g["TB"] + g["PB"])
-    d1, d2 = g["DB"] * sine_b, g["DB"] * cosine_b
-    d3, d4 = g["DA"] * sine_a, g["DA"] * cosine_a
+    # from the centers to the contact point
+    arm_a = -g["DA"] * cosine_a, -g["DA"] * sine_a
+    arm_b = g["DB"] * cosine_b, g["DB"] * sine_b
     # relative velocities of the contact points along n and t, and of the spins, A's minus B's
     relative = [
-        [c, s, _total(d3 * c, -d4 * s), -c, -s, _total(d1 * c, -d2 * s)],
-        [-s, c, _total(-d4 * c, -d3 * s), s, -c, _total(-d2 * c, -d1 * s)],
-        [0, 0, 1, 0, 0, -1],
+        [x, y, _moment(arm_a, x, y), -x, -y, -_moment(arm_b, x, y)] for x, y in ((c, s), (-s, c))
     ]
+    relative.append([0, 0, 1, 0, 0, -1])
     masses = [g[name] for name in ("MA", "MA", "IA", "MB", "MB", "IB")]
     changes = [[x / m for x, m in zip(row, masses, strict=True)] for row in relative]
     before = [g[name] for name in VELOCITIES]
@@ -172,11 +172,11 @@ def _results(scene: dict[str, Number]) -> dict[str, Number]:
     f: dict[str, Number] = dict(zip(FINAL_STATE, after, strict=True))
     f |= dict(zip(("ELN", "ELT", "ELM"), works, strict=True))
     f |= dict(zip(("PN", "PT", "PM"), P, strict=True))
-    for suffix, energy, (ax, ay, wa, bx, by, wb) in (("", "KI", before), ("F", "KF", after)):
-        f[f"XA{suffix}"], f[f"YA{suffix}"] = _total(ax, d3 * wa), _total(ay, -d4 * wa)
-        f[f"XB{suffix}"], f[f"YB{suffix}"] = _total(bx, -d1 * wb), _total(by, d2 * wb)
-        pairs = zip(masses, (ax, ay, wa, bx, by, wb), strict=True)
-        f[energy] = mpmath.fsum(m * v * v for m, v in pairs if v) / 2  # infinite bodies rest
+    for suffix, energy, v in (("", "KI", before), ("F", "KF", after)):
+        for body, (x, y), (vx, vy, w) in (("A", arm_a, v[:3]), ("B", arm_b, v[3:])):
+            f[f"X{body}{suffix}"] = _total(vx, -y * w)
+            f[f"Y{body}{suffix}"] = _total(vy, x * w)
+        f[energy] = mpmath.fsum(m * x * x for m, x in zip(masses, v, strict=True) if x) / 2
     if is_point:
         f |= {"WAF": scene["WA"], "WBF": scene["WB"]}
     if f["KI"]:
@@ -192,6 +192,11 @@ def _results(scene: dict[str, Number]) -> dict[str, Number]:
     f["DVB"] = mb * size
     f["MUP"] = mu
     return f
+
+
+def _moment(arm: Sequence[Number], x: Number, y: Number) -> Number:
+    """Return the moment of (x, y) at an arm: what a unit of spin moves its end along (x, y)."""
+    return _total(arm[0] * y, -arm[1] * x)
 
 
 def _direction(degrees: Number) -> tuple[Number, Number]:
