@@ -9,7 +9,8 @@ from typedpages import CELL, LEADING, draw, encode, scan
 import impact88
 from impact88.pictures import PictureVerification, verify_picture
 from impact88.pictures.exhibit import draw_page
-from impact88.printouts import Verdict
+from impact88.pictures.verdict import _compare_layer
+from impact88.printouts import Verdict, judge
 
 MARGIN = 60
 PAGE = "\n".join(line for line in impact88.run(impact88.sample(1)).page.split("\n") if line.strip())
@@ -47,6 +48,14 @@ def test_genuine_page_is_identical(genuine: PictureVerification) -> None:
     )
     assert not genuine.marks
     assert not genuine.remarks
+
+
+@pytest.mark.parametrize(("typed", "is_open"), [("-13.2", False), ("-18.2", True)])
+def test_text_layer_of_a_pdf(genuine: PictureVerification, typed: str, is_open: bool) -> None:
+    (layer,) = judge(PAGE.replace("VAX= -13.2", f"VAX= {typed}"))
+    result = _compare_layer(genuine, layer)
+    assert result.verdict is (Verdict.INCOMPLETE if is_open else Verdict.IDENTICAL)
+    assert ["does not agree" in remark for remark in result.remarks] == [True] * is_open
 
 
 def test_page_on_its_side_and_head() -> None:

@@ -2,7 +2,7 @@
 
 ``python tests/support/typestyles.py`` writes ``port/impact88/pictures/digits.npz``, from which the
 characters of a page get their first names: for each of `STYLES` the characters of `CHARACTERS`, one
-cell wide, 255 for full ink, with the top of a capital and its foot in the rows of `CAPITALS`. The
+cell wide, 255 for full ink, with a capital between the rows `TOP` and `FOOT`. The
 fonts are files of Debian's packages, in the folder that IMPACT88_FONTS names or in
 /usr/share/fonts:
 
@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from impact88.pictures.cells import CAPITALS, CHARACTERS
+from impact88.pictures.cells import CHARACTERS
 from impact88.pictures.grid import CELL_WIDTH
 
 STYLES = {
@@ -93,7 +93,7 @@ y ..... ..... #...# #...# .#### ....# .###.
 """
 """A character, and its five columns in each of seven rows of pins."""
 FILE = Path(__file__).parents[2] / "port/impact88/pictures/digits.npz"
-TOP, FOOT = CAPITALS
+TOP, FOOT = 4, 20  # rows between which capitals are drawn
 ROWS = TOP + FOOT
 FINE = 16  # pixels to which a pixel is drawn first
 Glyphs = np.ndarray[Any, np.dtype[np.uint8]]

@@ -23,11 +23,9 @@ BLANK = " "
 NUMERIC = "0123456789.-"
 CHARACTERS = NUMERIC + "ABCDEFGHIKLMNOPRSTUVWXYabxy=()%*:,?+"
 """Characters of the printed page of which `known_glyphs` has pictures."""
-CAPITALS = (4, 20)  # rows of a known glyph between which capitals are
-SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]
 STRENGTHS = (0.4, 1.3)  # smallest and largest strength of a cell's ink: ribbons run dry
 INKED = 0.25  # darkness from which a cell is inked: of blank cells 1 in 1,000 is darker than 0.27
-STYLES = 3  # known typefaces that a page may mix: its own lies between those
+MIN_USUAL = 0.05  # usual distance of cells from their means, as a fraction of the mean's energy
 MAX_SPREAD = 1.7  # mean distance in a group of equal digits, relative to that of equal letters
 REPEAT_PENALTY = 0.1  # on a second group of cells with the same name, per cell
 
@@ -57,6 +55,10 @@ class Cells(NamedTuple):
             vectors=self.vectors[chosen], norms=self.norms[chosen], odds=self.odds[chosen]
         )
 
+    def centred(self) -> Vectors:
+        """Return the vectors of the cells where the grid has them."""
+        return self.vectors[:, self.vectors.shape[1] // 2]
+
 
 def cells_of(grid: Grid) -> Cells:
     """Return all cells of a grid, line by line."""
@@ -68,13 +70,17 @@ def cells_of(grid: Grid) -> Cells:
             for cell in range(grid.count)
         ]
     )
-    tall = windows.shape[1] - 2 * SLACK
-    vectors = np.stack(
-        [windows[:, y : y + tall, x : x + CELL_WIDTH].reshape(len(windows), -1) for y, x in SHIFTS],
-        axis=1,
-    )
+    return _shifted_cells(windows)
+
+
+def _shifted_cells(windows: Image) -> Cells:
+    """Return the cells in the middle of windows that are wider by `SLACK` on each side."""
+    count, tall, wide = windows.shape
+    shape = tall - 2 * SLACK, wide - 2 * SLACK
+    views = np.lib.stride_tricks.sliding_window_view(windows, shape, (1, 2))
+    vectors = views.reshape(count, (2 * SLACK + 1) ** 2, -1)
     norms = np.einsum("nsp,nsp->ns", vectors, vectors)
-    return Cells(vectors, norms, _odds(windows), (tall, CELL_WIDTH))
+    return Cells(vectors, norms, _odds(windows), shape)
 
 
 def _odds(windows: Image) -> Floats:
@@ -95,9 +101,13 @@ def distances(cells: Cells, means: Vectors) -> Floats:
     """
     count, shifts, pixels = cells.vectors.shape
     inner = (cells.vectors.reshape(-1, pixels) @ means.T).reshape(count, shifts, len(means))
-    energy = np.maximum(np.einsum("mp,mp->m", means, means), 1e-6)
-    strength = np.clip(inner / energy, *STRENGTHS)
-    squares = cells.norms[:, :, None] - 2 * strength * inner + strength**2 * energy
+    return _least_squares(cells.norms, inner, np.einsum("mp,mp->m", means, means))
+
+
+def _least_squares(norms: Vectors, inner: Vectors, energy: Vectors) -> Floats:
+    """Return the least squared distances of cells from means with some inner products."""
+    strength = np.clip(inner / np.maximum(energy, 1e-6), *STRENGTHS)
+    squares = norms[:, :, None] + strength * (strength * energy - 2 * inner)
     least: Floats = np.maximum(squares.min(axis=1).astype(float), 0)
     return least
 
@@ -136,27 +146,34 @@ class Typeface(NamedTuple):
         energy: Floats = np.einsum("mp,mp->m", self.means, self.means).astype(float)
         return np.maximum(energy, 1e-3)
 
-    def without(self, cell: int) -> Vectors | None:
-        """Return the mean of a cell's character without the cell, None if it is alone."""
-        name = self.owners[cell]
-        if name < 0 or self.counts[name] < 2:
-            return None
-        count = self.counts[name]
-        mean: Vectors = (self.means[name] * count - self.members[cell]) / (count - 1)
-        return mean
+    def distances(self, cells: Cells) -> Floats:
+        """Return the distances of its cells from the means, shape (cells, names).
+
+        A cell is left out of the mean of its own character, unless it is alone.
+        """
+        to = distances(cells, self.means)
+        counts = self.counts.astype(np.float32)[self.owners][:, None]
+        rests = (self.means[self.owners] * counts - self.members) / np.maximum(counts - 1, 1)
+        inner = np.matmul(cells.vectors, rests[:, :, None])
+        energy = np.einsum("np,np->n", rests, rests)[:, None, None]
+        is_left_out = (self.owners >= 0) & (counts[:, 0] > 1)
+        own = _least_squares(cells.norms, inner, energy)[is_left_out, 0]
+        to[is_left_out, self.owners[is_left_out]] = own
+        return to
+
+    def usual_distance(self, to: Floats) -> float:
+        """Return the median of some distances of its cells from their own means, relative to the
+        energy of these."""
+        chosen = np.flatnonzero((self.owners >= 0) & (self.counts[self.owners] > 1))
+        own = self.owners[chosen]
+        return max(float(np.median(to[chosen, own] / self.energy[own])), MIN_USUAL)
 
     def between(self) -> Floats:
         """Return the squared distance of each mean from each other, and from blank paper last."""
         glyphs = np.vstack([self.means, np.zeros_like(self.means[:1])])
-        height, width = self.shape
-        pictures = glyphs.reshape(-1, height, width)
-        padded = np.pad(pictures, ((0, 0), (SLACK, SLACK), (SLACK, SLACK)))
-        vectors = np.stack(
-            [padded[:, y : y + height, x : x + width].reshape(len(glyphs), -1) for y, x in SHIFTS],
-            axis=1,
-        )
-        norms = np.einsum("nsp,nsp->ns", vectors, vectors)
-        cells = Cells(vectors, norms, np.zeros(len(glyphs)), self.shape)
+        pictures = glyphs.reshape(-1, *self.shape)
+        slack = (SLACK, SLACK)
+        cells = _shifted_cells(np.pad(pictures, ((0, 0), slack, slack)))
         return np.maximum(distances(cells, glyphs), 1e-3)
 
 
@@ -170,14 +187,13 @@ def typeface_of(cells: Cells, names: Sequence[str]) -> Typeface:
     def mean(members: Vectors) -> Vectors:
         return np.asarray(membership @ members / np.maximum(counts[:, None], 1), np.float32)
 
-    best = np.full(len(index), len(SHIFTS) // 2)
-    members = cells.vectors[:, len(SHIFTS) // 2]
+    members = cells.centred()
     for _ in range(2):  # each cell at the shift that fits the mean of its character
         means = mean(members)[np.maximum(index, 0)]
         inner = np.matmul(cells.vectors, means[:, :, None])[:, :, 0]
         best = np.argmin(cells.norms - 2 * inner, axis=1)
         members = cells.vectors[np.arange(len(index)), best]
-    shifts = np.array(SHIFTS)[best] - SLACK
+    shifts = np.stack(np.divmod(best, 2 * SLACK + 1), axis=1) - SLACK
     return Typeface(characters, mean(members), counts, index, members, shifts, cells.shape)
 
 
@@ -195,11 +211,10 @@ def known_glyphs() -> tuple[str, Vectors]:
 
 
 def unlikeness(cells: Cells) -> Floats:
-    """Return how unlike inked cells are to each of `CHARACTERS` in the known styles.
+    """Return how unlike inked cells are to each of `CHARACTERS` in the known style it is likest in.
 
-    It is 1 - cos φ, with φ the angle between the two pictures as vectors, at the best shift, in the
-    likeliest of the `STYLES` styles that fit the page best: 0 for the same picture, 1 for nothing
-    in common.
+    It is 1 - cos φ, with φ the angle between the two pictures as vectors, at the best shift: 0 for
+    the same picture, 1 for nothing in common.
 
     Parameters
     ----------
@@ -211,44 +226,33 @@ def unlikeness(cells: Cells) -> Floats:
     ndarray, shape (cells, characters)
     """
     _, glyphs = known_glyphs()
-    rows = _scaled_rows(cells)
-    flat = glyphs.reshape(len(glyphs), glyphs.shape[1], -1)
-    flat = flat / np.linalg.norm(flat, axis=2, keepdims=True)
-    sample = rows[:: max(1, len(rows) // 40)]
-    fits = _style_distances(sample, flat).min(axis=2).sum(axis=0)
-    least: Floats = (
-        _style_distances(rows, flat[np.argsort(fits)[:STYLES]]).min(axis=1).astype(float)
-    )
-    return least
-
-
-def _style_distances(rows: Vectors, styles: Vectors) -> Vectors:
-    """Return 1 - cos φ of each cell, style and glyph at the best shift."""
-    tall, width = sum(CAPITALS), CELL_WIDTH
-    glyphs = styles.reshape(-1, tall * width).T
+    styles, characters, tall, width = glyphs.shape
+    flat = glyphs.reshape(styles * characters, -1)
+    flat = flat / np.linalg.norm(flat, axis=1, keepdims=True)
+    rows = _scaled_rows(cells, glyphs)
     padded = np.pad(rows, ((0, 0), (3, 3), (1, 1)))
-    best = np.full((len(rows), glyphs.shape[1]), -1, np.float32)
+    best = np.full((len(rows), len(flat)), -1, np.float32)
     for y, x in product(range(7), range(3)):
         shifted = padded[:, y : y + tall, x : x + width].reshape(len(rows), -1)
         norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
-        np.maximum(best, shifted @ glyphs / norm, out=best)
-    return 1 - best.reshape(len(rows), len(styles), -1)
+        np.maximum(best, shifted @ flat.T / norm, out=best)
+    likeness = best.reshape(len(rows), styles, characters).max(axis=1)
+    return (1 - likeness).astype(float)
 
 
-def _scaled_rows(cells: Cells) -> Vectors:
-    """Return cells scaled to the height of the known capitals: shape (cells, rows, columns)."""
+def _scaled_rows(cells: Cells, glyphs: Vectors) -> Vectors:
+    """Return cells scaled to the height of known glyphs: shape (cells, rows, columns)."""
     height, width = cells.shape
-    pictures = cells.vectors[:, len(SHIFTS) // 2].reshape(-1, height, width)
-    profile = pictures.sum(axis=(0, 2))
-    inked = np.flatnonzero(profile > 0.25 * profile.max())
-    top, foot = float(inked[0]), float(inked[-1] + 1)
-    scale = (foot - top) / (CAPITALS[1] - CAPITALS[0])
-    offset = top + (0.5 - CAPITALS[0]) * scale - 0.5
+    pictures = cells.centred().reshape(-1, height, width)
+    top, foot = _inked_rows(pictures)
+    known_top, known_foot = _inked_rows(glyphs)
+    scale = (foot - top) / (known_foot - known_top)
+    offset = top + (0.5 - known_top) * scale - 0.5
     rows: Vectors = ndimage.affine_transform(
         pictures,
         [1, scale, 1],
         [0, offset, 0],
-        (len(pictures), sum(CAPITALS), width),
+        (len(pictures), *glyphs.shape[-2:]),
         order=1,
         mode="grid-constant",
     )
@@ -256,14 +260,20 @@ def _scaled_rows(cells: Cells) -> Vectors:
     return smooth
 
 
+def _inked_rows(pictures: Vectors) -> tuple[int, int]:
+    """Return the first row of capitals in pictures of cells, and the row below their foot."""
+    profile = pictures.reshape(-1, *pictures.shape[-2:]).sum(axis=(0, 2))
+    inked = np.flatnonzero(profile > 0.25 * profile.max())
+    return int(inked[0]), int(inked[-1] + 1)
+
+
 def pair_distances(cells: Cells) -> Floats:
     """Return the distances of cells from each other, relative to their energies.
 
     The smaller of the two directions counts: a blot, or the strength of the ribbon, does not.
     """
-    middle = len(SHIFTS) // 2
-    to_cells = distances(cells, cells.vectors[:, middle])
-    energy = cells.norms[:, middle] + 1e-6
+    to_cells = distances(cells, cells.centred())
+    energy = cells.norms[:, cells.norms.shape[1] // 2] + 1e-6
     pairs: Floats = np.minimum(to_cells, to_cells.T) / np.sqrt(np.sqrt(np.outer(energy, energy)))
     np.fill_diagonal(pairs, 0)
     return pairs

@@ -13,8 +13,6 @@ from ..printouts import VERDICTS, Kind, Verdict
 from .picture import Floats
 from .verdict import PictureVerification
 
-MAX_WIDTH = 1400  # pixels across the page in a report: 17 a character of 80 columns
-
 
 class Outline(NamedTuple):
     """A marked place of the picture.
@@ -61,12 +59,9 @@ def draw_page(result: PictureVerification) -> Exhibit:
     result : PictureVerification
         The printout.
     """
-    rows, columns = result.grey.shape
-    scale = min(1.0, MAX_WIDTH / columns)
-    width, height = max(1, round(columns * scale)), max(1, round(rows * scale))
-    pixels = np.clip(result.grey, 0, 255).astype(np.uint8)
+    height, width = result.grey.shape
     file = io.BytesIO()
-    PIL.Image.fromarray(pixels).resize((width, height)).save(file, "PNG")
+    PIL.Image.fromarray(np.clip(result.grey, 0, 255).astype(np.uint8)).save(file, "PNG")
     uri = f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
     outlines = []
     for finding, box in zip(result.verification.findings, result.boxes, strict=True):
@@ -78,7 +73,6 @@ def draw_page(result: PictureVerification) -> Exhibit:
         note = f"{cell.name or 'label'}: {cell.predicted!r} printed, like {cell.other!r}"
         outlines.append(Outline(box, "doubt", note))
     outlines += [Outline(box, "foreign", "ink that nothing explains") for box in result.marks]
-    part = scale / result.scale
     return Exhibit(
-        uri, width, height, tuple(o._replace(corners=o.corners * part) for o in outlines)
+        uri, width, height, tuple(o._replace(corners=o.corners / result.scale) for o in outlines)
     )

@@ -22,8 +22,6 @@ CELL_WIDTH = 16  # pixels of a resampled cell: 3 and 8 of a dot matrix are disti
 SLACK = 2  # pixels kept around a cell, for the shifts that are tried
 MIN_LINES = 6  # lines of type of a page
 WIDEST = 1.1  # widest pitch, in heights of a line; pages have 0.6 to 0.97
-MAX_COLUMNS = 200  # pitches across a page: two printouts side by side have 180
-REACH = 0.3  # distance from a whole pitch at which the phase of a piece loses its weight, pitches
 CELL_HEIGHT = 1.7  # height of a cell, in heights of a line
 PIECE = 12  # length of the piece of a line whose gaps and height are measured at once, cells
 
@@ -207,7 +205,7 @@ def grid_of(ink: Image, points: Points) -> Grid | None:
         return None
     members = [np.flatnonzero((level >= top) & (level < foot)) for top, foot in lines]
     xs, ys = [x[inked] for inked in members], [y[inked] for inked in members]
-    pitch = _pitch(xs, height, span)
+    pitch = _pitch(xs, height)
     if not pitch:
         return None
     bend, clarity = _fit_bend(_phasors(xs, ys, pitch, span), tilt[0], pitch, span)
@@ -270,14 +268,14 @@ def _gaps(x: Floats, pitch: float) -> Floats:
     return np.asarray(low + (np.concatenate(gaps) + 0.5) * step if gaps else [low])
 
 
-def _pitch(xs: list[Floats], height: float, span: float) -> float:
+def _pitch(xs: list[Floats], height: float) -> float:
     """Return the period of the gaps in pixels, 0 where there is none: the largest of the summed
     power spectrum."""
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
     power = np.sum([np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum() for gap in gaps], axis=0)
     last = int(2 * WIDEST * height)
-    first = max(last // 2, int(2 * span / MAX_COLUMNS), 2)  # an octave, so that it is no harmonic
+    first = max(last // 2, 2)  # an octave, so that it is no harmonic
     chosen = np.arange(size // last, size // first + 1)
     return float(size / chosen[np.argmax(power[chosen])] / 2) if len(chosen) else 0.0
 
@@ -324,14 +322,15 @@ def _fit_bend(phasors: _Phasors, slope: float, pitch: float, span: float) -> tup
     """
     bend = _search_bend(phasors, slope, pitch, span)
     weights = np.abs(phasors.sums)
+    turn = pitch / (2 * np.pi)
     for _ in range(8):  # reweighted least squares on the phase of each piece
         moved = phasors.shift(bend, pitch)
-        off = np.angle(moved * np.conj(moved.sum())) / (2 * np.pi) * pitch
-        sure = weights * np.exp(-((off / (REACH * pitch)) ** 2))
+        phase = np.angle(moved * np.conj(moved.sum()))
+        sure = weights * np.maximum(np.cos(phase), 0)  # what a piece adds to the clarity
         normal = (phasors.terms * sure) @ phasors.terms.T + 1e-4 * sure.sum() * np.eye(len(bend))
-        bend = bend - np.linalg.solve(normal, (phasors.terms * sure) @ off)
+        bend = bend - np.linalg.solve(normal, (phasors.terms * sure) @ phase) * turn
     total = phasors.shift(bend, pitch).sum()
-    bend[0] -= float(np.angle(total)) / (2 * np.pi) * pitch
+    bend[0] -= float(np.angle(total)) * turn
     return bend, float(np.abs(total) / weights.sum())
 
 

@@ -16,7 +16,6 @@ from importlib.util import find_spec
 from threading import Timer
 from typing import IO, Any, NamedTuple
 
-DOTS_PER_INCH = 300  # a character of 10 or 12 an inch is 25 to 30 pixels wide
 MAX_PAGES = 200  # pages of a file, at a second or two each
 MAX_SECONDS = 10.0  # for a page; one of 300 dots an inch takes 0.1
 MAX_BYTES = 400_000_000  # address space of the process
@@ -33,7 +32,7 @@ class Rendered(NamedTuple):
 
 
 def render_pages(data: bytes, name: str, max_side: int) -> Iterator[Rendered]:
-    """Yield the pages of a PDF, none longer than ``max_side`` pixels.
+    """Yield the pages of a PDF, each ``max_side`` pixels long.
 
     Raises
     ------
@@ -94,8 +93,7 @@ def _render(document: Any, number: int, max_side: int) -> tuple[dict[str, Any], 
     """Return the header, the pixels and the text of a page."""
     page = document[number - 1]
     width, height = page.get_size()
-    scale = min(DOTS_PER_INCH / 72, max_side / max(width, height, 1))
-    bitmap = page.render(scale=scale, grayscale=True)
+    bitmap = page.render(scale=max_side / max(width, height, 1), grayscale=True)
     rows = memoryview(bitmap.buffer).cast("B")
     starts = range(0, bitmap.height * bitmap.stride, bitmap.stride)
     pixels = b"".join(rows[start : start + bitmap.width] for start in starts)

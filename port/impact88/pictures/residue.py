@@ -35,7 +35,7 @@ def marks_of(grid: Grid, filled: NDArray[np.bool_]) -> list[Floats]:
         right, foot = np.ceil(corners.max(axis=0) + border).astype(int)
         is_free[top:foot, left:right] = False
     dark = (grid.ink > DARK) & is_free
-    labels, _ = ndimage.label(ndimage.binary_closing(dark, np.ones((3, 3))))
+    labels, _ = ndimage.label(ndimage.binary_closing(dark, np.ones((3, 3), bool)))
     areas = np.bincount(labels[dark], minlength=labels.max() + 1)
     marks = []
     for number, box in enumerate(ndimage.find_objects(labels), 1):

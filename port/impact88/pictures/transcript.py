@@ -10,23 +10,23 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..printouts import Verification, judge
-from ..printouts.page import REPLIES, ROWS, PrintedChar
+from ..printouts.glyphs import SCREEN_WIDTHS
+from ..printouts.page import NAMES, REPLIES, PrintedChar, print_page
 from .align import BESIDE, IRREGULAR_COST, NUMBER, OPTIONAL, REPLY, align, costs_of
 from .cells import (
     BLANK,
     CHARACTERS,
     NUMERIC,
     Cells,
-    Typeface,
     cells_of,
-    distances,
     name_groups,
     pair_distances,
     typeface_of,
@@ -37,28 +37,10 @@ from .picture import Floats
 
 HOLDS = -0.1  # measure of a cell below which it is the predicted character
 DIFFERS = 0.35  # measure above which it is another
-MIN_DISTANCE = (
-    3.0  # distance from the predicted mean, in the page's usual, below which none differs
-)
-MAX_FOREIGN = 8.0  # distance of a cell from its character's mean, in the page's usual distances
+MAX_FOREIGN = 8.0  # distance of a cell from the mean that it is like, in the page's usual distances
 MIN_MEMBERS = 3  # cells of which a mean is made that a cell is found to be like
-MIN_DENSITY = 0.7  # gain of a row for each of its inked cells: a line of other text has 0.4
-MIN_USUAL = 0.05  # usual distance of cells from their means, as a fraction of the mean's energy
-MAX_OFF = 0.1  # fraction of the cells that contradict a page, from which it is of another scene
-MAX_UNLIKE = 0.45  # distance of type from its mean, as a fraction of the mean's energy
-ROUNDS = 3  # readings by the page's own means
-SCREEN = 40  # columns of an Apple's screen
 UNREAD = "?"
 IN_NUMBERS = NUMERIC + "E+"
-TEMPLATES = [
-    re.sub(
-        "(?<=[:,])",
-        OPTIONAL,
-        re.sub(r"{(\w+)}", lambda match: REPLY if match[1] in REPLIES else NUMBER, row),
-    )
-    for row in ROWS
-]
-"""The program's rows, numbers and replies as wildcards."""
 
 
 class Cell(NamedTuple):
@@ -77,7 +59,7 @@ class Cell(NamedTuple):
     margin : float
         -1 for the mean of the predicted character, 1 for that of the other.
     distance : float
-        Distance from the predicted character's mean, in the page's usual distances.
+        Distance from the nearer of the two means, in the page's usual distances.
     members, other_members : int
         Cells of which the two means were made.
     """
@@ -98,14 +80,11 @@ class Cell(NamedTuple):
 
         A cell without ink never differs: dropped ink looks like erasure.
         """
-        if self.predicted == BLANK:
-            is_known = self.other_members >= MIN_MEMBERS
-            return "holds" if self.margin < DIFFERS else "differs" if is_known else "doubt"
-        if self.margin < HOLDS and self.distance < MAX_FOREIGN:
-            return "holds"
         is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
-        is_far = self.margin > DIFFERS and self.distance > MIN_DISTANCE
-        return "differs" if is_far and is_known else "doubt"
+        if self.margin < (DIFFERS if self.predicted == BLANK else HOLDS):
+            return "holds" if self.distance < MAX_FOREIGN else "doubt"
+        is_other = self.margin > DIFFERS and self.distance < MAX_FOREIGN
+        return "differs" if is_other and is_known else "doubt"
 
 
 @dataclass
@@ -136,6 +115,10 @@ class Transcript:
     gain: float = 0.0
     sheets: list[Verification] = field(default_factory=list)
 
+    def count_held(self) -> int:
+        """Return the number of cells that hold what is predicted."""
+        return sum(cell.state == "holds" for cell in self.cells)
+
     def line_cell(self, offset: int) -> tuple[int, int]:
         """Return line and cell of an offset of the text."""
         place = self.places[min(offset, len(self.places) - 1)]
@@ -159,29 +142,30 @@ def transcribe(grid: Grid, given: Mapping[str, str] | None = None) -> Transcript
     given : mapping of str to str, optional
         Inputs known from elsewhere, for a page with results only.
     """
+    fields = dict.fromkeys(NAMES, NUMBER)
+    templates = [*map(_row_text, _rows_of(print_page(fields, dict.fromkeys(REPLIES, REPLY))))]
     reader = Reader(grid, cells_of(grid))
-    rows = reader.place_rows(TEMPLATES)
+    rows = reader.place_rows(templates)
     gain = sum(placed.gain for placed in rows) / max(1, int(reader.inked.sum()))
     if not reader.name_labels(rows):
         return Transcript(grid, gain=gain)
-    grid = reader.register_lines()
-    reader = Reader(grid, cells_of(grid))
-    reader.name_labels(reader.place_rows(TEMPLATES))
+    reader.register_lines()
     reader.name_numbers()
-    for _ in range(ROUNDS):
-        reader.read()
-    transcript = Transcript(grid, reader.text(reader.names), reader.places(), gain=gain)
-    for _ in range(ROUNDS):
-        sheets = judge(transcript.text, given)
-        if [s.page for s in sheets] == [s.page for s in transcript.sheets]:
-            break
-        transcript.sheets = sheets
+    before, changes = len(reader.names), reader.read()
+    while 0 < changes < before:
+        before, changes = changes, reader.read()
+    grid = reader.grid
+    best = Transcript(grid, reader.text(reader.names), reader.places(), gain=gain)
+    while True:
+        sheets = judge(best.text, given)
         if not reader.predict(sheets):
-            break
-        reader.read(reader.predicted_names())
-        transcript.cells = reader.measure()
-        transcript.text = reader.final_text(transcript.cells)
-    return transcript
+            return replace(best, sheets=sheets)
+        cells = reader.measure()
+        text = reader.final_text(cells)
+        transcript = Transcript(grid, text, reader.places(), cells, gain, sheets)
+        if transcript.count_held() <= best.count_held():
+            return best
+        best = transcript
 
 
 class Placement(NamedTuple):
@@ -269,17 +253,17 @@ class Reader:
             path = part.paths[0, inside]
             states = [part.states[state] for state in path]
             cells = flat[unit][inside]
-            is_row = self.inked[cells] & np.array([state != BESIDE for state in states])
-            if gains[unit, row] > MIN_DENSITY * is_row.sum():
-                gain = float(gains[unit, row])
-                placements.append(Placement(row, gain, cells, states, part.sources[path]))
+            gain = float(gains[unit, row])
+            placements.append(Placement(row, gain, cells, states, part.sources[path]))
         return placements
 
     def name_labels(self, placements: Sequence[Placement]) -> bool:
         """Name the cells of labels, and mark those of numbers. Return False without any."""
         joined = [placed.cells for placed in placements if len(placed.cells) > self.shape[1]]
         is_joined = np.zeros(self.shape[0], bool)
-        is_joined[[cell // self.shape[1] for unit in joined for cell in unit[::SCREEN]]] = True
+        is_joined[
+            [cell // self.shape[1] for unit in joined for cell in unit[:: SCREEN_WIDTHS[0]]]
+        ] = True
         lines = [unit for unit, taken in zip(self.layout, is_joined, strict=True) if not taken]
         self.layout = sorted([*lines, *joined], key=lambda unit: int(unit[0]))
         for placed in placements:
@@ -292,8 +276,8 @@ class Reader:
             self.names[chosen] = states[is_label & self.inked[placed.cells]]
         return bool(self.is_label.any())
 
-    def register_lines(self) -> Grid:
-        """Return the grid with each line moved onto the means of the page's labels and figures."""
+    def register_lines(self) -> None:
+        """Move each line of the grid onto the means of the page's labels."""
         chosen = np.flatnonzero(self.is_label)
         face = typeface_of(self.cells.at(chosen), self.names[chosen].tolist())
         lines, columns = np.divmod(chosen, self.shape[1])
@@ -309,7 +293,9 @@ class Reader:
                 if np.ptp(columns[at]) > 20:
                     rise, level = np.polyfit(columns[at], off, 1)
                 own[line, part : part + 2] = unit * level, unit * rise
-        return self.grid.move_lines(own)
+        self.grid = self.grid.move_lines(own)
+        self.cells = cells_of(self.grid)
+        self.inked = self.cells.odds > 0
 
     def name_numbers(self) -> None:
         """Give the cells of numbers their first names."""
@@ -323,13 +309,14 @@ class Reader:
         sample = self.cells.at(numbers)
         self.names[numbers] = name_groups(sample, self.unlike[numbers, : len(NUMERIC)], usual)
 
-    def read(self, names: NDArray[np.str_] | None = None) -> None:
-        """Read each inked cell but labels by the means of the cells under the names."""
-        names = self.names if names is None else names
+    def read(self) -> int:
+        """Read each inked cell but labels by the means of the names. Return how many change."""
+        names = self.names
         inked = np.flatnonzero(self.inked)
         sample = self.cells.at(inked)
         face = typeface_of(sample, names[inked].tolist())
-        to = self._leave_one_out(sample, face, distances(sample, face.means))
+        to = face.distances(sample)
+        usual = face.usual_distance(to)
         to[:, face.counts < MIN_MEMBERS] *= 4  # what was read once or twice may be misread
         is_numeric = np.array([name in IN_NUMBERS + "," for name in face.names])
         in_numbers = np.where(is_numeric, to, np.inf)
@@ -340,7 +327,7 @@ class Reader:
         to = np.where(self.is_number[inked][:, None], in_numbers, to)
         best = to.argmin(axis=1)
         nearest = np.array([*face.names])[best]
-        is_type = to.min(axis=1) < MAX_UNLIKE * face.energy[best]
+        is_type = to.min(axis=1) < MAX_FOREIGN * usual * face.energy[best]
         steps = to - to.min(axis=1)[:, None]
         steps[np.arange(len(best)), best] = np.inf
         is_clear = (steps / face.between()[best, :-1]).min(axis=1) > DIFFERS
@@ -354,15 +341,7 @@ class Reader:
         is_beside = (self.names != BLANK) & ~self.is_number & ~self.is_label
         crowd = np.bincount(lines[is_beside & self.is_clear], minlength=self.shape[0])
         self.names[is_beside & (crowd[lines] < MIN_MEMBERS)] = BLANK
-
-    def _leave_one_out(self, sample: Cells, face: Typeface, to: Floats) -> Floats:
-        """Return distances with each cell left out of its own character's mean."""
-        for cell in np.flatnonzero(face.owners >= 0).tolist():
-            mean = face.without(cell)
-            if mean is not None:
-                part = sample.at(np.array([cell]))
-                to[cell, face.owners[cell]] = distances(part, mean[None])[0, 0]
-        return to
+        return int((self.names != names).sum())
 
     def text(self, names: NDArray[np.str_]) -> str:
         """Return names as text, lines that a screen broke in one."""
@@ -379,20 +358,18 @@ class Reader:
         rows: list[list[PrintedChar]] = []
         ends: list[tuple[int, int]] = []
         for sheet in sheets:
-            by_row: dict[int, list[PrintedChar]] = {}
-            for printed in sheet.page:
-                by_row.setdefault(printed.row, []).append(printed)
+            parts = _rows_of(sheet.page)
             places = self.places()[[sheet.span[0], sheet.span[1] - 1]]
             lines = (places // self.shape[1]).tolist()
-            rows += by_row.values()
-            ends += [(lines[0], lines[1])] * len(by_row)
+            rows += parts
+            ends += [(lines[0], lines[1])] * len(parts)
         if not rows:
             return False
         texts = [*map(_row_text, rows)]
         placements = sorted(self.place_rows(texts, ends), key=lambda placed: placed.gain)
         for placed in {placed.row: placed for placed in placements}.values():  # the best of a row
             self._predict_row(rows[placed.row], texts[placed.row].replace(OPTIONAL, ""), placed)
-        return True
+        return bool((self.predicted != "").any())
 
     def _predict_row(self, row: Sequence[PrintedChar], text: str, placed: Placement) -> None:
         """Predict the cells of a row, and blanks beside its words."""
@@ -410,14 +387,6 @@ class Reader:
                 if text[column + step : column + step + 1] != REPLY:
                     self.predicted[near] = BLANK
                     self.fields[near] = self.fields[near] or names[column]
-
-    def predicted_names(self) -> NDArray[np.str_]:
-        """Return the names with those of the predicted page, unless many cells contradict it."""
-        is_known = (self.predicted != "") & (self.predicted != BLANK) & self.inked
-        is_off = is_known & (self.predicted != self.names)
-        if is_off.sum() > MAX_OFF * self.inked.sum():
-            return self.names
-        return np.where(is_known, self.predicted, self.names)
 
     def measure(self) -> list[Cell]:
         """Return the predicted cells with what each is like.
@@ -443,12 +412,11 @@ class Reader:
         own = np.array([kinds.index(name) for name in want])
         blank = len(face.names)
         counts = np.r_[face.counts, len(want)]
-        to = self._leave_one_out(sample, face, distances(sample, face.means))
+        to = face.distances(sample)
         to = np.column_stack([to, sample.norms.min(axis=1)])
         energy = np.r_[face.energy, 1e-3]
         to_own = to[np.arange(len(asked)), own]
-        is_usual = (own != blank) & (counts[own] > 1) & is_member
-        usual = max(float(np.median((to_own / energy[own])[is_usual])), MIN_USUAL)
+        usual = face.usual_distance(to)
         is_alone = (own != blank) & (counts[own] < 2)
         to_own[is_alone] = 2 * usual * energy[own[is_alone]]
         steps = to_own[:, None] - to
@@ -463,7 +431,8 @@ class Reader:
         largest = margins.max(axis=1)
         largest[on_blank & ~self.inked[asked]] = -1.0
         best = np.where(np.isinf(margins), np.inf, to).argmin(axis=1)
-        far = np.where(on_blank, 0.0, to_own / energy[own] / usual)
+        nearest = np.minimum(to_own / energy[own], to[np.arange(len(asked)), best] / energy[best])
+        far = np.where(on_blank, 0.0, nearest / usual)
         return [
             Cell(
                 *divmod(at, self.shape[1]),
@@ -499,11 +468,10 @@ def altered_numbers(cells: Sequence[Cell]) -> set[str]:
 
 
 def unread_cells(cells: Sequence[Cell]) -> list[Cell]:
-    """Return the cells of numbers in doubt: those that look blank, where ink may have dropped, and
-    those of numbers of which no cell differs. Others are read as they look."""
-    altered = altered_numbers(cells)
-    doubts = [cell for cell in cells if cell.name and cell.state == "doubt"]
-    return [cell for cell in doubts if cell.other == BLANK or cell.name not in altered]
+    """Return the cells in doubt of numbers of which no cell differs. Others are read as they look:
+    that a number is another one is known then."""
+    altered = {*altered_numbers(cells), ""}
+    return [cell for cell in cells if cell.state == "doubt" and cell.name not in altered]
 
 
 def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
@@ -513,10 +481,11 @@ def _units(inked: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     cells = np.arange(lines * count).reshape(lines, count)
     units = [*cells]
     margin = _left_margin(inked)
-    beyond = inked[:, margin + SCREEN :].sum(axis=1)
+    stop = margin + SCREEN_WIDTHS[0]
+    beyond = inked[:, stop:].sum(axis=1)
     if (beyond >= MIN_MEMBERS).sum() > 1:  # one line may have a mark
         return units
-    screen = cells[:, margin : margin + SCREEN]
+    screen = cells[:, margin:stop]
     for joined in (2, 3):
         units += [np.concatenate(screen[k : k + joined]) for k in range(lines - joined + 1)]
     return units
@@ -551,6 +520,11 @@ def _left_margin(inked: NDArray[np.bool_]) -> int:
     """Return the column in which most lines begin."""
     starts = inked[inked.sum(axis=1) > 8].argmax(axis=1)
     return int(np.bincount(starts).argmax()) if len(starts) else 0
+
+
+def _rows_of(page: Sequence[PrintedChar]) -> list[list[PrintedChar]]:
+    """Return the rows of a page."""
+    return [[*row] for _, row in groupby(page, key=lambda printed: printed.row)]
 
 
 def _row_text(row: Sequence[PrintedChar]) -> str:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,12 +12,11 @@ from ..printouts import VERDICTS, Kind, Verdict, Verification, judge
 from ..printouts.page import REPLIES, RESULTS
 from .cells import BLANK
 from .grid import grid_of
-from .picture import Floats, Image, Page, ink_of, points_of, read_pages
+from .picture import Floats, Image, Page, ink_of, points_of, read_pages, resize
 from .residue import marks_of
 from .transcript import Cell, Transcript, altered_numbers, transcribe, unread_cells
 
-MAX_DIFFERING = 6  # cells that differ, beyond which the reader is more likely wrong than the page
-PROMPT = re.compile(r"(?m)^( *ENTER.*?:.*?\?).*$")
+MAX_ALTERED = 2  # numbers and labels that differ, beyond which the reader may be wrong
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,7 @@ class PictureVerification:
     remarks : tuple of str
         Remarks on the page.
     grey : ndarray
-        The page.
+        The page, reduced so that a cell is `grid.CELL_WIDTH` pixels wide.
     scale : float
         Pixels of the file per pixel of ``grey``.
     """
@@ -187,14 +185,17 @@ def _judge_transcript(
     transcript: Transcript, marks: Sequence[Floats], scene: Mapping[str, str] | None
 ) -> Iterator[Verification]:
     """Yield the printouts of a transcript with the verdict on the picture."""
-    results = judge(transcript.text, scene)
-    if any(_is_reply_alone(result) for result in results):
+    text = transcript.text
+    results = judge(text, scene)
+    replies = [f for r in results for f in r.findings if f.name in REPLIES]
+    if any(VERDICTS[reply.kind] is not Verdict.AS_READ for reply in replies):
         # a reply was typed by a person: it is not held against a page
-        results = judge(PROMPT.sub(_blank_reply, transcript.text), scene)
+        for reply in replies:
+            text = _blank(text, reply.start, reply.stop)
+        results = judge(text, scene)
     outside = transcript.text
     for result in results:
-        first, stop = result.span
-        outside = outside[:first] + BLANK * (stop - first) + outside[stop:]
+        outside = _blank(outside, *result.span)
     for result in results:
         verdict = _gate_verdict(result, transcript, marks)
         if verdict is Verdict.IDENTICAL and outside.strip():  # other text on the sheet
@@ -202,13 +203,9 @@ def _judge_transcript(
         yield replace(result, verdict=verdict)
 
 
-def _is_reply_alone(result: Verification) -> bool:
-    adverse = [f for f in result.findings if VERDICTS[f.kind] is not Verdict.AS_READ]
-    return bool(adverse) and any(finding.name in REPLIES for finding in adverse)
-
-
-def _blank_reply(match: re.Match[str]) -> str:
-    return str(match[1]).ljust(len(match[0]))
+def _blank(text: str, start: int, stop: int) -> str:
+    """Return a text with a part blanked."""
+    return text[:start] + BLANK * (stop - start) + text[stop:]
 
 
 def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[Floats]) -> Verdict:
@@ -223,32 +220,22 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     doubts = [cell for cell in cells if cell.state == "doubt"]
     differing = [cell for cell in cells if cell.state == "differs"]
     in_doubt = unread_cells(cells)
-    adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
-    if not cells or not any(_is_same_page(result, sheet, adverse) for sheet in transcript.sheets):
-        return Verdict.INCOMPLETE
     verdict = result.verdict
     if verdict is Verdict.DIFFERS:
+        adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
         measured = {cell.name for cell in cells}
         is_odd = not altered_numbers(cells) <= adverse
         is_odd |= any(f.kind is Kind.NUMBER and f.name not in measured for f in result.findings)
         is_odd |= any(cell.name not in RESULTS for cell in in_doubt)
-        is_odd |= len(differing) > MAX_DIFFERING
+        is_odd |= len({cell.name or cell for cell in differing}) > MAX_ALTERED
         return Verdict.INCOMPLETE if is_odd else verdict
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
-        if in_doubt or altered_numbers(cells):
+        is_measured = any(result.page == sheet.page for sheet in transcript.sheets)
+        if in_doubt or altered_numbers(cells) or not is_measured:
             return Verdict.INCOMPLETE
         if doubts or differing or marks:
             return Verdict.AS_READ
     return verdict
-
-
-def _is_same_page(result: Verification, sheet: Verification, adverse: Collection[str]) -> bool:
-    """Return True if the program prints the same numbers for two scenes, but those that differ."""
-    return result.numbers.keys() == sheet.numbers.keys() and all(
-        number.printed == sheet.numbers[name].printed
-        for name, number in result.numbers.items()
-        if name not in adverse
-    )
 
 
 def _remarks(
@@ -301,6 +288,6 @@ def _locate_findings(
         tuple(doubts),
         tuple(page.scale * _as_it_lies(mark, quarters, size) for mark in marks),
         tuple(_remarks(transcript, verification, marks)),
-        page.grey,
-        page.scale,
+        resize(page.grey, grid.scale),
+        page.scale / grid.scale,
     )
