@@ -39,8 +39,6 @@ CELL = Cell(0, 0, "3", "VAX", "8", 1.0, 5.0, 9, 9)
         ({"margin": -0.07}, "doubt"),
         ({"margin": 0.3}, "doubt"),
         ({"margin": 0.5}, "differs"),
-        ({"distance": 7.0}, "differs"),
-        ({"distance": 10.0}, "doubt"),
         ({"margin": -0.5, "distance": 7.0}, "holds"),
         ({"margin": -0.5, "distance": 10.0}, "doubt"),
         ({"other_members": 2}, "doubt"),
@@ -193,6 +191,18 @@ def test_more_differences_than_an_alteration_has(labels: int, verdict: Verdict) 
     assert _gate_verdict(result, cast(Transcript, sheet), []) is verdict
 
 
+def reader_of(cells: Cells) -> Reader:
+    """Return the reader of a line of six cells."""
+    return Reader(cast(Grid, SimpleNamespace(middles=[0], count=6)), cells)
+
+
+@pytest.mark.parametrize(("likeness", "is_row"), [(0.15, True), (0.21, False)])
+def test_line_of_other_text_is_no_row(likeness: float, is_row: bool) -> None:
+    reader = reader_of(two_figures())
+    reader.unlike[:] = likeness
+    assert bool(reader.place_rows(["******"])) == is_row
+
+
 @pytest.mark.parametrize(("blot", "state"), [(0.3, "holds"), (0.55, "doubt")])
 def test_blot_on_a_page_without_grain(blot: float, state: str) -> None:
     """Where equal cells are the same, the usual distance is a twentieth of their energy."""
@@ -202,8 +212,7 @@ def test_blot_on_a_page_without_grain(blot: float, state: str) -> None:
     ink = np.sqrt(blot * (three**2).sum() / 9)
     page[20:23, :3] += ink
     cells = cells_at(np.pad(page, ((3 + SLACK, SLACK), (SLACK, SLACK))))
-    grid = SimpleNamespace(middles=[0], count=6)
-    reader = Reader(cast(Grid, grid), cells)
+    reader = reader_of(cells)
     reader.predicted[:] = "3"
     reader.fields[:] = "MA"
     assert [cell.state for cell in reader.measure()] == [state] + ["holds"] * 5

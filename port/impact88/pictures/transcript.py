@@ -37,8 +37,9 @@ from .picture import Floats
 
 HOLDS = -0.1  # measure of a cell below which it is the predicted character
 DIFFERS = 0.35  # measure above which it is another
-MAX_FOREIGN = 8.0  # distance of a cell from the mean that it is like, in the page's usual distances
+MAX_FOREIGN = 8.0  # distance of a cell from its character's mean, in the page's usual distances
 MIN_MEMBERS = 3  # cells of which a mean is made that a cell is found to be like
+MIN_DENSITY = 0.7  # gain of a row for each of its inked cells: a line of other text has 0.4
 UNREAD = "?"
 IN_NUMBERS = NUMERIC + "E+"
 
@@ -59,7 +60,7 @@ class Cell(NamedTuple):
     margin : float
         -1 for the mean of the predicted character, 1 for that of the other.
     distance : float
-        Distance from the nearer of the two means, in the page's usual distances.
+        Distance from the predicted character's mean, in the page's usual distances.
     members, other_members : int
         Cells of which the two means were made.
     """
@@ -80,11 +81,10 @@ class Cell(NamedTuple):
 
         A cell without ink never differs: dropped ink looks like erasure.
         """
-        is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
         if self.margin < (DIFFERS if self.predicted == BLANK else HOLDS):
             return "holds" if self.distance < MAX_FOREIGN else "doubt"
-        is_other = self.margin > DIFFERS and self.distance < MAX_FOREIGN
-        return "differs" if is_other and is_known else "doubt"
+        is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
+        return "differs" if self.margin > DIFFERS and is_known else "doubt"
 
 
 @dataclass
@@ -254,7 +254,9 @@ class Reader:
             states = [part.states[state] for state in path]
             cells = flat[unit][inside]
             gain = float(gains[unit, row])
-            placements.append(Placement(row, gain, cells, states, part.sources[path]))
+            is_row = self.inked[cells] & np.array([state != BESIDE for state in states])
+            if gain > MIN_DENSITY * is_row.sum():
+                placements.append(Placement(row, gain, cells, states, part.sources[path]))
         return placements
 
     def name_labels(self, placements: Sequence[Placement]) -> bool:
@@ -431,8 +433,7 @@ class Reader:
         largest = margins.max(axis=1)
         largest[on_blank & ~self.inked[asked]] = -1.0
         best = np.where(np.isinf(margins), np.inf, to).argmin(axis=1)
-        nearest = np.minimum(to_own / energy[own], to[np.arange(len(asked)), best] / energy[best])
-        far = np.where(on_blank, 0.0, nearest / usual)
+        far = np.where(on_blank, 0.0, to_own / energy[own] / usual)
         return [
             Cell(
                 *divmod(at, self.shape[1]),

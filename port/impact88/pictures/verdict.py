@@ -10,13 +10,12 @@ import numpy as np
 from ..errors import UserError
 from ..printouts import VERDICTS, Kind, Verdict, Verification, judge
 from ..printouts.page import REPLIES, RESULTS
+from ..printouts.verdict import MAX_ALTERED
 from .cells import BLANK
 from .grid import grid_of
 from .picture import Floats, Image, Page, ink_of, points_of, read_pages, resize
 from .residue import marks_of
 from .transcript import Cell, Transcript, altered_numbers, transcribe, unread_cells
-
-MAX_ALTERED = 2  # numbers and labels that differ, beyond which the reader may be wrong
 
 
 @dataclass(frozen=True)
@@ -211,31 +210,43 @@ def _blank(text: str, start: int, stop: int) -> str:
 def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[Floats]) -> Verdict:
     """Return the verdict on a picture: that of its text, held back by cells and marks.
 
-    A page differs only if the measured cells are those of the same predicted page, each cell that
-    differs belongs to a finding, each number that differs was measured, and no cell of an input is
-    in doubt.
+    A page differs only if the numbers that differ have cells that do and no others have, no cell of
+    an input is in doubt, and there are no more differences than an alteration has. It is identical
+    only if the cells were measured against the numbers that the program prints. A row that is there
+    twice was measured once; where labels are exchanged the program prints other numbers for the
+    text than were measured, and cells of labels differ.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
     doubts = [cell for cell in cells if cell.state == "doubt"]
     differing = [cell for cell in cells if cell.state == "differs"]
     in_doubt = unread_cells(cells)
+    altered = altered_numbers(cells)
+    printed = _printed_numbers(result)
+    is_measured = any(_printed_numbers(sheet) == printed for sheet in transcript.sheets)
     verdict = result.verdict
     if verdict is Verdict.DIFFERS:
         adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
-        measured = {cell.name for cell in cells}
-        is_odd = not altered_numbers(cells) <= adverse
-        is_odd |= any(f.kind is Kind.NUMBER and f.name not in measured for f in result.findings)
+        numbers = {f.name for f in result.findings if f.kind is Kind.NUMBER}
+        is_twice = any(f.kind is Kind.ROW_TWICE for f in result.findings)
+        is_odd = not altered <= adverse
+        if is_measured:
+            is_odd |= not numbers <= altered and not is_twice
+        else:
+            is_odd |= all(cell.name for cell in differing)
         is_odd |= any(cell.name not in RESULTS for cell in in_doubt)
         is_odd |= len({cell.name or cell for cell in differing}) > MAX_ALTERED
         return Verdict.INCOMPLETE if is_odd else verdict
     if verdict in (Verdict.IDENTICAL, Verdict.AS_READ):
-        is_measured = any(result.page == sheet.page for sheet in transcript.sheets)
-        if in_doubt or altered_numbers(cells) or not is_measured:
+        if in_doubt or altered or not is_measured:
             return Verdict.INCOMPLETE
         if doubts or differing or marks:
             return Verdict.AS_READ
     return verdict
+
+
+def _printed_numbers(result: Verification) -> dict[str, str]:
+    return {name: number.printed for name, number in result.numbers.items()}
 
 
 def _remarks(
