@@ -237,7 +237,8 @@ def unlikeness(cells: Cells) -> Floats:
         norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
         np.maximum(best, shifted @ flat.T / norm, out=best)
     likeness = best.reshape(len(rows), styles, characters).max(axis=1)
-    return (1 - likeness).astype(float)
+    unlike: Floats = (1 - likeness).astype(float)
+    return unlike
 
 
 def _scaled_rows(cells: Cells, glyphs: Vectors) -> Vectors:
