@@ -226,7 +226,8 @@ def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
     columns = [
         (draw(item.amount, count, rng) - item.amount.value) / item.sd for item in search.measured
     ]
-    points, is_impact = search.follow(fit.point, np.stack(columns, 1))
+    moves = np.stack(columns, 1)
+    points, is_impact = search.follow(fit.point + moves @ fit.sensitivity.T, moves)
     points = points[is_impact]
     impacts = target.impacts(points)
     is_allowed = np.all([row >= 0 for _, row in fit.problem.margins(impacts)], axis=0)

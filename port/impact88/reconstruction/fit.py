@@ -213,6 +213,7 @@ class Search:
 
     def descend(self, points: Array) -> Array:
         """Return the ends of Levenberg-Marquardt iterations."""
+        settled = 1e-8 if self.limited else 1e-6  # polishing stops at the bends of limits
         for tolerance, iterations in LIMITED_STAGES if self.limited else STAGES:
             damping = np.full(len(points), 1e-2)
             residual = self._all_residuals(points, tolerance)
@@ -223,7 +224,7 @@ class Search:
                 points = np.where(better[:, None], points + step, points)
                 residual = np.where(better[:, None], trial, residual)
                 damping = np.clip(np.where(better, damping * 0.1, damping * 8), 1e-12, 1e8)
-                if (np.abs(step).max(1) < 1e-8).mean() > CONVERGED:
+                if (np.abs(step).max(1) < settled).mean() > CONVERGED:
                     break
         return points
 
@@ -278,19 +279,17 @@ class Search:
         # a step that crosses a limit again does not count
         return np.where((after <= before) | (after < EXACT_TOL), points, starts)
 
-    def follow(self, point: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Return impacts whose measured values differ from those at a point by ``moves`` (rows, in
-        standard deviations), and whether Newton's method ended in one; as many values are measured
-        as determine an impact. Coordinates that are measured are set, the others follow."""
-        points = np.tile(point / self.sizes, (len(moves), 1))
-        spreads = [self.priors[k].sd / self.sizes[k] for k in self.places]
-        points[:, self.places] += moves[:, : len(self.places)] * spreads
+    def follow(self, points: Array, moves: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Return impacts whose measured values are off by ``moves`` (rows, in standard deviations),
+        from points near them whose measured coordinates are so, and whether Newton's method ended
+        in one; as many values are measured as determine an impact."""
+        points = points / self.sizes
         target = np.pad(moves, ((0, 0), (0, len(self.hard))))
         free = np.delete(np.arange(len(self.names)), self.places)
         for _ in range(NEWTON_STEPS):
             residual = self._all_residuals(points)
             misfit = np.abs(residual - target).max(1)
-            if not len(free) or (misfit < EXACT_TOL).all():
+            if not len(free) or (misfit < STEP).all():
                 break
             slope = self._forward_slopes(points, residual, 1.0, self.places)
             square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(free))
