@@ -38,6 +38,8 @@ STEP = 2.0**-30  # of a change whose effect is scaled to one unit in the last pl
 STRIP = 4096  # scenes at a time: about a hundred arrays stay in the cache
 LARGEST_BODY = 1e200  # in place of an infinite mass, whose products have no value
 ELIMINATION_STEPS = 2.0**6  # roundings of an entry of six equations
+EXACT = ("degree", "point", "pivot", "stick")
+"""Statements without rounding of their own: pi / 180 rounds with the angles."""
 IMPULSES = {"PN": "Pn", "PT": "Pt", "PM": "Pm"}
 """Results that follow from the velocities, and the impulses that the velocities follow from."""
 COMPARED = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
@@ -119,15 +121,10 @@ def _rounding_effects(
     outputs = (*names, "slide", *impulses.values())
     program = Program("impulses", _finite(scene), wanted=outputs)
     base = program.base
-    targets = [s.target for s in program.statements if s.target not in ("point", "pivot", "stick")]
+    targets = [s.target for s in program.statements if s.target not in EXACT]
     moves = {target: base[target] * (1 + STEP) for target in (*COLUMNS[:-1], *targets)}
     moves["MU"] = np.where(base["MU"] == -10.0, base["MU"], moves["MU"])
-    sums = {name: np.zeros(program.size) for name in outputs}
-    for target, value in moves.items():
-        outcome = program.propagate({target: value})
-        for name, total in sums.items():
-            if outcome[name] is not base[name]:
-                total += np.abs(outcome[name] - base[name])
+    sums = program.effects(({target: value} for target, value in moves.items()), outputs)
     for name, impulse in impulses.items():  # a program may have it from either
         sums[name] = np.fmax(sums[name], sums.pop(impulse))
     factor = SAFETY * EPSILON / STEP
@@ -210,9 +207,4 @@ def _follow(
     program = Program("impulses", _finite(scene))
     velocities = {name: program.base[name] for name in VELOCITIES}
     program = Program("impulses", _finite(scene), (), velocities)
-    sums = {name: np.zeros(program.size) for name in names}
-    for velocity, bound in bounds.items():
-        outcome = program.propagate({velocity: velocities[velocity] + bound})
-        for name, total in sums.items():
-            total += np.abs(outcome[name] - program.base[name])
-    return sums
+    return program.effects(({n: x + bounds[n]} for n, x in velocities.items()), names)

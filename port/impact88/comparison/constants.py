@@ -1,14 +1,13 @@
 """Fit a constant that has a wrong value: each row gives its own, and the rows must agree."""
 
 import ast
-from collections.abc import Callable, Mapping
 from math import pi
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .conditions import roundest
-from .evaluation import Edit, Floats, Program, evaluate, stack
+from .evaluation import Alternatives, Edit, Floats, Program, evaluate
 from .mutants import sites, slot_name
 from .numbers import spread
 from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
@@ -59,25 +58,27 @@ KNOWN = {
 
 
 class Form(NamedTuple):
-    """A way in which a constant enters: as a function and as text; the constant without effect."""
+    """A way in which a constant enters.
 
-    apply: Callable[[Any, Any], Any]
+    ``text`` has an expression for "{0}" and the constant for "{1}"; ``neutral``: the constant
+    without effect; ``says``: what it does to a column.
+    """
+
     text: str
     neutral: float
     says: str
 
 
-FACTOR = Form(lambda x, k: x * k, "{0} * {1}", 1.0, "multiplied by {}")
-TERM = Form(lambda x, k: x + k, "{0} + {1}", 0.0, "increased by {}")
-CONSTANT = Form(lambda x, k: k + 0 * x, "{1}", 0.5, "always {}")
+FACTOR = Form("({0}) * {1}", 1.0, "multiplied by {}")
+TERM = Form("({0}) + {1}", 0.0, "increased by {}")
+CONSTANT = Form("{1} + 0 * ({0})", 0.5, "always {}")
 LIMIT = Form(
-    lambda x, k: np.sign(x) * k,
     "where({0} == -10, {0}, maximum(minimum({0}, {1}), -{1}))",
-    0.5,
+    0.01,
     "limited to {}",
 )
-Trial = Callable[[Floats], Mapping[str, Any]]
-"""Function of constants (places, rows) that returns a program's values with them."""
+LIMITED = ("E", "MU", "EM")
+"""Columns that programs limit."""
 
 
 @np.errstate(all="ignore")
@@ -94,43 +95,32 @@ def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
     """Return the edits of columns as they are read, or results as they are shown."""
     edits = []
     for side, names in (("<", COLUMNS[:-1]), (">", (*sample.theirs,))):
+        verb = "read" if side == "<" else "shown"
         groups = [group.split(",") for group in GROUPS[side].split()]
         groups = [g for g in groups if set(g) <= set(names)] + [[name] for name in names]
         for group in groups:
-            forms = [FACTOR, TERM] if len(group) == 1 else [FACTOR]
-            forms += [LIMIT] if group[0] in ("E", "MU", "EM") else []
+            forms = [FACTOR, *[TERM] * (len(group) == 1), *[LIMIT] * (group[0] in LIMITED)]
             for form in forms:
-                trial = _column_trial(program, side, group, form)
-                constants = _fit(sample, trial, form, 1)
-                constants += [_known_factor(sample, trial)] if form is FACTOR else []
+                changes = {f"{side} {n}": [form.text.format(n, "k")] for n in group}
+                constants = _fit(sample, program, changes, form)
+                constants += [_known_factor(sample, program, changes)] if form is FACTOR else []
                 for constant in filter(np.isfinite, constants):
                     number, meaning = _digits_and_meaning(constant, form)
-                    verb = "read" if side == "<" else "shown"
                     says = f"{', '.join(group)} {form.says.format(number)}, as {verb}{meaning}"
-                    changes = {f"{side} {n}": form.text.format(n, number) for n in group}
-                    edits.append(Edit(says, changes, RANK_KNOWN if meaning else RANK - 1))
+                    texts = {f"{side} {n}": form.text.format(n, number) for n in group}
+                    edits.append(Edit(says, texts, RANK_KNOWN if meaning else RANK - 1))
     return edits
 
 
-def _known_factor(sample: "Sample", trial: Trial) -> float:
+def _known_factor(sample: "Sample", program: Program, changes: Alternatives) -> float:
     """Return the known factor that gives most rows.
 
     Rounded results fix a large factor too loosely to be fitted.
     """
-    factors = np.array([k for ratio in KNOWN.values() for k in (ratio, 1 / ratio)])
-    names = trial(np.repeat(factors[:, None], sample.wrong.size, 1))
-    return float(factors[sample.fits(names, factors.size).sum(1).argmax()])
-
-
-def _column_trial(program: Program, side: str, group: list[str], form: Form) -> Trial:
-    """Return the trial of a constant in columns."""
-
-    def trial(k: Floats) -> Mapping[str, Any]:
-        source = program.typed if side == "<" else program.base
-        values = {name: form.apply(source[name], k) for name in group}
-        return program.propagate(values) if side == "<" else {**program.base, **values}
-
-    return trial
+    factors = [k for ratio in KNOWN.values() for k in (ratio, 1 / ratio)]
+    alternatives = {key: list(texts) * len(factors) for key, texts in changes.items()}
+    fits = sample.fits(program.run(alternatives, factors), len(factors))
+    return factors[fits.sum(1).argmax()]
 
 
 def _statement_constants(sample: "Sample", program: Program, part: str) -> list[Edit]:
@@ -139,60 +129,41 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     reading = {s.target for s in text.statements[: text.own]} if program.name != NAMES[0] else set()
     places: dict[str, dict[str, str]] = {}
     for site in sites(program.name, part):
-        (target, *twins), expression = site.targets, site.expressions[0]
-        if (
-            not twins
-            and len(site.expressions) == 1
-            and target not in reading
-            and expression not in VELOCITIES
-        ):
-            places.setdefault(target, {})[site.holes[0]] = expression
+        (target, *twins), (expression, *others) = site.targets, site.expressions
+        if not (twins or others or target in reading or expression in VELOCITIES):
+            value = evaluate(expression, program.scope(target))
+            if np.ndim(value) < 2 and np.size(value) > 1 and value.dtype == float:
+                places.setdefault(target, {})[site.holes[0]] = expression
     edits = []
     for target, expressions in places.items():
-        scope = program.scope(target)
-        values = {hole: evaluate(text, scope) for hole, text in expressions.items()}
-        values = {h: v for h, v in values.items() if np.ndim(v) < 2 and np.size(v) > 1}
-        values = {h: v for h, v in values.items() if v.dtype == float}
-        for form in (FACTOR, TERM, CONSTANT) if values else ():
-            trial = _statement_trial(program, target, values, form)
-            constants = _fit(sample, trial, form, len(values))
-            for hole, constant in zip(values, constants, strict=True):
+        for form in (FACTOR, TERM, CONSTANT):
+            texts = [
+                hole.replace(slot_name(0), f"({form.text.format(expression, 'k')})")
+                for hole, expression in expressions.items()
+            ]
+            constants = _fit(sample, program, {target: texts}, form)
+            for (hole, expression), constant in zip(expressions.items(), constants, strict=True):
                 if np.isfinite(constant):
                     number, meaning = _digits_and_meaning(constant, form)
-                    old_text = expressions[hole]
-                    new_text = form.text.format(f"({old_text})", number)
+                    new_text = number if form is CONSTANT else form.text.format(expression, number)
                     changes = {target: hole.replace(slot_name(0), f"({new_text})")}
                     rank = RANK_KNOWN if meaning else RANK
                     new_text = ast.unparse(parse(new_text)) + meaning
-                    edits.append(Edit("", changes, rank, (new_text,), (old_text,)))
+                    edits.append(Edit("", changes, rank, (new_text,), (expression,)))
     return edits
 
 
-def _statement_trial(program: Program, target: str, values: Mapping[str, Any], form: Form) -> Trial:
-    """Return the trial of a constant at each place in a statement."""
-    scope = program.scope(target)
-
-    def trial(k: Floats) -> Mapping[str, Any]:
-        alternatives = [
-            evaluate(hole, {**scope, slot_name(0): form.apply(value, row)})
-            for (hole, value), row in zip(values.items(), k, strict=True)
-        ]
-        return program.propagate({target: stack(alternatives, program.size)})
-
-    return trial
-
-
-def _fit(sample: "Sample", trial: Trial, form: Form, count: int) -> list[float]:
-    """Return the constant at each place that the rows agree on, NaN where they do not.
+def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) -> list[float]:
+    """Return the constant in each alternative that the rows agree on, NaN where they do not.
 
     Notes
     -----
     The secant method, in each row by itself; the results' differences are least squares.
     """
-    shape = (count, sample.wrong.size)
+    shape = (len(next(iter(changes.values()))), sample.wrong.size)
 
     def misfit(k: Floats) -> Any:
-        names = trial(k)
+        names = program.run(changes, list(k))
         return np.array(
             [
                 (np.broadcast_to(names[n], shape) - theirs) / sample.limits[n]

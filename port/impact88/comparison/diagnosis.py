@@ -185,9 +185,9 @@ def search(
                 if base and edit.rank > RANK_MODEL:
                     continue
                 if targets.isdisjoint(edit.changes):
-                    fit = screen.fits(small.run(edit.changes))[0]
-                    if fit.sum() >= need:
-                        rows = sample.fits(full.run(edit.changes))[0]
+                    changes = {key: [text] for key, text in edit.changes.items()}
+                    if screen.fits(small.run(changes)).sum() >= need:
+                        rows = sample.fits(full.run(changes))[0]
                         candidates.append(Candidate(name, (*base, edit), rows))
     plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
     candidates = [c for c in candidates if (c.rows != plain).any()]

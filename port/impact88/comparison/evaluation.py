@@ -16,6 +16,8 @@ from .spellings import COLUMNS, Statement, names_in, spelling
 
 Floats = NDArray[np.float64]
 Values = dict[str, Any]
+Alternatives = Mapping[str, Sequence[str]]
+"""A place in a program, as an edit names it -> expressions that are tried there."""
 
 
 def round_to_single(x: Any) -> Any:
@@ -86,7 +88,7 @@ class Program:
         The spelling.
     columns : mapping of str to ndarray
         The scenes, and the number of the row.
-    edits : iterable of Edit
+    edits : sequence of Edit
         Edits, the later on top of the earlier.
     velocities : mapping of str to ndarray, optional
         Final velocities to take instead of computing them.
@@ -98,7 +100,7 @@ class Program:
         self,
         name: str,
         columns: Mapping[str, Floats],
-        edits: Iterable[Edit] = (),
+        edits: Sequence[Edit] = (),
         velocities: Mapping[str, Floats] | None = None,
         wanted: Sequence[str] = (),
     ) -> None:
@@ -112,26 +114,23 @@ class Program:
             self.statements[first:] = _ancestors(self.statements[first:], wanted)
         identity = np.eye(len(self.spelling.unknowns) + 1)[1:]
         self.basis = dict(zip(self.spelling.unknowns, identity[:, :, None, None], strict=True))
-        self.shown: list[Mapping[str, str]] = []
-        self.base: Values = dict(self.typed)
+        written: dict[str, str] = {}
         for edit in edits:
-            self.shown.append(edit.changes)
-            self._write(edit.changes)
-            for key, text in edit.changes.items():
-                if key[0] == "<":
-                    self.base[key[2:]] = evaluate(text, self.typed)
+            written |= edit.changes
+        self.statements = [
+            s._replace(text=written[s.target], reads=names_in(written[s.target]))
+            if s.target in written
+            else s
+            for s in self.statements
+        ]
+        columns = {n[2:]: evaluate(t, self.typed) for n, t in written.items() if n[0] == "<"}
+        self.base: Values = {**self.typed, **columns}
+        self.shown = [{key: [text] for key, text in edit.changes.items()} for edit in edits]
         self._first = 0
         self.base = self._advance(self.base, set(COLUMNS), {})
         if velocities:
             self._first = self.spelling.results
             self.base = self.propagate(velocities)
-
-    def _write(self, changes: Mapping[str, str]) -> None:
-        """Put expressions in place of others."""
-        for place, statement in enumerate(self.statements):
-            if statement.target in changes:
-                text = changes[statement.target]
-                self.statements[place] = statement._replace(text=text, reads=names_in(text))
 
     @property
     def linear(self) -> frozenset[str]:
@@ -147,33 +146,66 @@ class Program:
         """Return all values where some statements or columns have other values."""
         return self._advance({**self.base, **values}, set(values), {})
 
-    def run(self, changes: Mapping[str, str]) -> Values:
-        """Return all values with further expressions edited."""
-        columns = {
-            key[2:]: evaluate(text, self.typed) for key, text in changes.items() if key[0] == "<"
-        }
-        texts = {key: text for key, text in changes.items() if key[0] not in "<>"}
-        names = self._advance({**self.base, **columns}, set(columns), texts)
-        return _show(names, changes)
+    def effects(
+        self, changes: Iterable[Mapping[str, Any]], names: Iterable[str]
+    ) -> dict[str, Floats]:
+        """Return by how much each change of values changes results, added up."""
+        sums = {name: np.zeros(self.size) for name in names}
+        for values in changes:
+            outcome = self.propagate(values)
+            for name, total in sums.items():
+                if outcome[name] is not self.base[name]:
+                    total += np.abs(outcome[name] - self.base[name])
+        return sums
 
-    def _advance(self, names: Values, dirty: set[str], texts: Mapping[str, str]) -> Values:
+    def run(self, changes: Alternatives, k: Sequence[Any] = (np.nan,)) -> Values:
+        """Return all values with other expressions in some places.
+
+        ``changes`` has the alternatives of each place, and ``k`` the value of "k" in each of them.
+        """
+        columns = {
+            key[2:]: self._values(texts, self.typed, k)
+            for key, texts in changes.items()
+            if key[0] == "<"
+        }
+        return self._advance({**self.base, **columns}, set(columns), changes, k)
+
+    def _values(self, texts: Sequence[str], scope: Values, k: Sequence[Any]) -> Any:
+        """Return the values of alternatives."""
+        values = [evaluate(t, {**scope, "k": x}) for t, x in zip(texts, k, strict=True)]
+        return values[0] if len(values) == 1 else stack(values, self.size)
+
+    def _advance(
+        self,
+        names: Values,
+        dirty: set[str],
+        changes: Alternatives,
+        k: Sequence[Any] = (np.nan,),
+    ) -> Values:
         """Compute what is edited or reads a dirty name; what is dirty at first keeps its value."""
         constants = frozenset(dirty)
         last = self.spelling.equations[-1] if self.spelling.unknowns else ""
         linear = self.linear
         for statement in self.statements[self._first :]:
             target = statement.target
-            text = texts.get(target, statement.text)
-            is_stale = target in texts or target not in names
+            is_stale = target in changes or target not in names
             if target not in constants and (is_stale or not dirty.isdisjoint(statement.reads)):
                 scope = {**names, **self.basis} if target in linear else names
-                names[target] = evaluate(text, scope)
+                texts = changes.get(target)
+                names[target] = (
+                    self._values(texts, scope, k) if texts else evaluate(statement.text, scope)
+                )
                 dirty.add(target)
             if target == last and not dirty.isdisjoint(self.spelling.equations):
                 names.update(self._solve([names[name] for name in self.spelling.equations]))
                 dirty.update(self.spelling.unknowns)
-        for changes in self.shown:
-            _show(names, changes)
+        for shown in (*self.shown, changes):
+            results = {
+                key[2:]: self._values(texts, names, k)
+                for key, texts in shown.items()
+                if key[0] == ">"
+            }
+            names.update(results)
         return names
 
     def _solve(self, equations: Sequence[Any]) -> dict[str, Any]:
@@ -216,14 +248,6 @@ def _ancestors(statements: Sequence[Statement], wanted: Sequence[str]) -> list[S
             inputs |= statement.reads
             chosen.append(statement)
     return chosen[::-1]
-
-
-def _show(names: Values, changes: Mapping[str, str]) -> Values:
-    """Change the results that are shown otherwise."""
-    before = dict(names)
-    shown = {key[2:]: text for key, text in changes.items() if key[0] == ">"}
-    names.update({name: evaluate(text, before) for name, text in shown.items()})
-    return names
 
 
 def statement_of(name: str, target: str) -> Statement:

@@ -161,12 +161,9 @@ class Diagnosis:
         velocities = {n: self.table.theirs[n][rows] for n in VELOCITIES}
         sample = sample._replace(columns={**sample.columns, **velocities})
         program = sample.program("impulses")
-        limits = dict(sample.limits)
-        for name, values in velocities.items():
-            names = program.propagate({name: values + self.limits[name][rows]})
-            for result in sample.theirs:
-                limits[result] = limits[result] + np.abs(names[result] - program.base[result])
-        return sample._replace(limits=limits)
+        moves = ({n: x + self.limits[n][rows]} for n, x in velocities.items())
+        effects = program.effects(moves, sample.theirs)
+        return sample._replace(limits={n: x + effects[n] for n, x in sample.limits.items()})
 
     def _gives(self, candidate: Candidate, name: str) -> bool:
         """Return whether a program that gives the velocities gives a result, too."""

@@ -340,7 +340,7 @@ def _columns(side: str, names: Sequence[str], how: str) -> Iterator[Edit]:
                 swap = {f"{side} {name}": other, f"{side} {other}": name}
                 yield Edit(f"{name} and {other} exchanged, {how}", swap, RANK_MODEL + 1)
         for other in names:
-            if side == ">" and other not in similar and other != name:
+            if other not in similar and other != name:
                 says = f"{other} in place of {name}, {how}"
                 yield Edit(says, {f"{side} {name}": other}, RANK_FAR)
 
