@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from wrongprograms import answers
+from otherprograms import answers
 
 import impact88
 from impact88.comparison import spellings

@@ -124,7 +124,8 @@ def test_every_emendation_is_needed(errata: Errata) -> None:
     printed = text("listing-as-printed.txt")
     for field, rows in errata._asdict().items():
         for i in range(len(rows)):
-            without = errata._replace(**{field: rows[:i] + rows[i + 1 :]})
+            fewer_rows = {field: rows[:i] + rows[i + 1 :]}
+            without = errata._replace(**fewer_rows)
             try:
                 derived = restore(printed, without)
             except (AssertionError, IndexError):

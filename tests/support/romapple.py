@@ -9,9 +9,8 @@ Applesoft.
 import hashlib
 from collections import deque
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
-from impact88.apple.emulator.screen import BASE, HEIGHT, WIDTH, shown_character
 from impact88.errors import UserError, library
 from impact88.files import read_bytes
 
@@ -20,44 +19,15 @@ SIZE = 0x10000 - START
 APPLE_II_PLUS = "33a24f5489ba9195b44be77d9afb2252594cb5c7"
 """SHA-1 of the Apple II Plus set: Applesoft in ROM and the autostart monitor."""
 
-_OTHER_SIZES = {
-    2048: "one chip of the six that make the set; join $D000 to $F800 in order",
-    16384: "an Apple IIe's or IIc's, which begins at $C000",
-    20480: "an Apple II Plus set with 8,192 bytes in front that no Apple has there",
-    32768: "an Apple IIc's",
-}
 
-
-class Image(NamedTuple):
-    """A ROM image: its bytes from $D000 on, their SHA-1, and whether that is Apple's."""
-
-    data: bytes
-    sha1: str
-    known: bool
-
-
-def read_image(path: str, any_rom: bool = False) -> Image:
-    """Read an image from a file. ``any_rom``: accept unknown images, too.
-
-    Raises UserError for a file that cannot be read, has another size, or is not known.
-    """
+def read_image(path: str) -> bytes:
+    """Return an image from a file; UserError for one that is not an Apple II Plus's."""
     data = read_bytes(path, limit=1_000_000)
-    if len(data) != SIZE:
-        hint = _OTHER_SIZES.get(len(data))
-        raise UserError(
-            f"has {len(data):,} bytes{f' ({hint})' if hint else ''}; expected an Apple II Plus ROM "
-            f"of {SIZE:,} bytes, ${START:X} to $FFFF",
-            path,
-        )
     sha1 = hashlib.sha1(data).hexdigest()
-    known = sha1 == APPLE_II_PLUS
-    if not known and not any_rom:
-        raise UserError(
-            f"SHA-1 {sha1} is not the Apple II Plus set's, {APPLE_II_PLUS}; "
-            "--any-rom tries it all the same",
-            path,
-        )
-    return Image(data, sha1, known)
+    if sha1 != APPLE_II_PLUS:
+        expected = f"{SIZE:,} bytes from ${START:X}, SHA-1 {APPLE_II_PLUS}"
+        raise UserError(f"has {len(data):,} bytes, SHA-1 {sha1}; expected {expected}", path)
+    return data
 
 
 IO_START = 0xC000  # no memory from here to the ROM
@@ -127,8 +97,7 @@ class Memory(bytearray):
 class Apple:
     """An Apple II Plus with a ROM, switched off at first.
 
-    ``instructions``: number executed so far; ``blanks``: columns skipped on a line are output as
-    blanks when a character follows. Raises UserError when py65 is missing.
+    ``instructions``: number executed so far. Raises UserError when py65 is missing.
     """
 
     def __init__(self, rom: bytes) -> None:
@@ -136,7 +105,6 @@ class Apple:
         self.memory = Memory(rom)
         self.cpu = self.memory.cpu = processor.MPU(self.memory, pc=None)
         self.instructions = 0
-        self.blanks = True
         self._output: list[str] = []
         self._column = 0
 
@@ -188,10 +156,7 @@ class Apple:
         """Run the monitor's output routine and record its character."""
         cpu, memory = self.cpu, self.memory
         character = chr(cpu.a & 0x7F)
-        gap = max(memory[CURSOR_COLUMN] - self._column, 0)
-        if character >= " ":
-            self._output.append(" " * gap * self.blanks)
-            gap = 0
+        gap = 0 if character >= " " else max(memory[CURSOR_COLUMN] - self._column, 0)
         self._output.append("\n" if character == RETURN else character)
         top = cpu.sp + 2 & 0xFF  # RTS leaves the stack two bytes shorter than at the call
         self._step(lambda: cpu.sp == top, limit, _NOT_WAITING)
@@ -206,12 +171,6 @@ class Apple:
     def word(self, address: int) -> int:
         """Return the 16-bit number at an address, low byte first."""
         return int(self.memory[address] + 256 * self.memory[address + 1])
-
-    def screen_text(self) -> str:
-        """Return the 24 rows of the text screen, without blanks at their ends."""
-        starts = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
-        rows = (self.memory[start : start + WIDTH] for start in starts)
-        return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in rows)
 
     def state(self) -> State:
         """Return the machine's state; it must be waiting for a key."""

@@ -1,5 +1,4 @@
-"""Sessions at the ROM's own prompt: run the restored listing on a scene, or any program, or make
-one calculation.
+"""Sessions at the ROM's own prompt: run the restored listing on a scene, or make one calculation.
 
 Everything is typed with the keys a user would press; lower-case letters are POKEd into the listing,
 as was usual in 1988. Variables are read from memory by the reference manual's appendix "Applesoft
@@ -18,10 +17,6 @@ from impact88.files import packaged_text
 from impact88.program.scene import LISTING, Scene
 
 PROMPT = "]"
-_OTHER_PROMPTS = {
-    "*": "the monitor's prompt *: an older monitor, or no Applesoft in this ROM",
-    ">": "the prompt > of Integer BASIC; the listing is Applesoft",
-}
 LONGEST_TYPED = 239  # characters that the monitor's line reader keeps, by Apple's documents
 
 
@@ -34,10 +29,8 @@ class Session:
             displayed = self.apple.boot()
         except Lost as lost:
             raise UserError(f"this ROM does not come to a prompt: {lost}") from None
-        last = displayed.rstrip()[-1:]
-        if last != PROMPT:
-            what = _OTHER_PROMPTS.get(last, f"{displayed[-20:]!r}, no prompt of Applesoft")
-            raise UserError(f"this ROM comes to {what}")
+        if displayed.rstrip()[-1:] != PROMPT:
+            raise UserError(f"this ROM comes to {displayed[-20:]!r}, no prompt of Applesoft")
         self.fresh = self.apple.state()
         """The machine at its first prompt."""
 
@@ -61,19 +54,10 @@ class Session:
         does not end.
         """
         self.apple.restore(self.with_listing)
-        self.apple.blanks = False
         for line in scene.typed_lines():
             self._enter(line)
         printout = self._run("".join(f"{reply}\n" for reply in scene.keyboard()))
         return {"printout": printout, "reals": _reals(self.apple), "A": _array_a(self.apple)}
-
-    def run_program(self, program: str, keys: str = "", *, blanks: bool = True) -> str:
-        """Type a program, RUN and keys; return the output without the prompts' NULs."""
-        self.apple.restore(self.fresh)
-        self.apple.blanks = blanks
-        for line in filter(None, program.split("\n")):
-            self._enter(line)
-        return self._run(keys).replace("\0", "")
 
     def calculate(self, operation: str, first: str, second: str, extension: str) -> str:
         """Call one routine of the ROM's arithmetic; arguments and result in the captures' form: a

@@ -93,7 +93,8 @@ y ..... ..... #...# #...# .#### ....# .###.
 """
 """A character, and its five columns in each of seven rows of pins."""
 FILE = Path(__file__).parents[2] / "port/impact88/pictures/digits.npz"
-TOP, FOOT = 4, 20  # rows between which capitals are drawn
+TOP = 4  # rows between which capitals are drawn
+FOOT = 20
 ROWS = TOP + FOOT
 FINE = 16  # pixels to which a pixel is drawn first
 Glyphs = np.ndarray[Any, np.dtype[np.uint8]]

@@ -29,7 +29,6 @@ MARGIN = 0.01  # of the rows, by which a likelier explanation may give fewer
 MIN_HELD_OUT = 4  # rows; with fewer the search uses all
 MIN_BITS = 24.0  # of information in the rows: about a million edits are tried
 WITH_READING = ("impulses", "trial")  # spellings in which a mistake of the reading is looked for
-MAX_SURVIVORS = 600  # edits tried on all rows
 MAX_CONDITIONAL = 60  # edits for which a condition is looked for
 MAX_BASES = 4  # edits on top of which a second one is looked for
 MAX_ALTERNATIVES = 3  # listed, of those that give the same numbers
@@ -165,20 +164,16 @@ def search(
         wanted = tuple(sample.theirs) if part == "velocities" else ()
         small, full = (s.program(name, base, wanted) for s in (screen, sample))
         need = min(MIN_SCREENED, places.size)
-        hits: list[tuple[int, Site, int]] = []
         for site in _sites(name, part, name in WITH_READING or bool(base)):
             if targets.isdisjoint(site.targets):
-                values = small.propagate(site.values(small))
-                counts = screen.fits(values, len(site.options)).sum(1)
-                hits += [(int(counts[k]), site, int(k)) for k in np.flatnonzero(counts >= need)]
-        hits.sort(key=lambda hit: -hit[0])
-        groups: dict[int, tuple[Site, list[int]]] = {}
-        for _, site, place in hits[:MAX_SURVIVORS]:
-            groups.setdefault(id(site), (site, []))[1].append(place)
-        for site, options in groups.values():
-            fits = sample.fits(full.propagate(site.values(full, options)), len(options))
-            for place, rows in zip(options, fits, strict=True):
-                candidates.append(Candidate(name, (*base, site.edit(place)), rows))
+                counts = screen.fits(small.propagate(site.values(small)), len(site.options)).sum(1)
+                options = np.flatnonzero(counts >= need).tolist()
+                values = full.propagate(site.values(full, options)) if options else {}
+                fits = sample.fits(values, len(options)) if options else ()
+                candidates += [
+                    Candidate(name, (*base, site.edit(k)), rows)
+                    for k, rows in zip(options, fits, strict=True)
+                ]
         if name == NAMES[0] or base:
             small, full = screen.program(name, base), sample.program(name, base)
             for edit in _model_edits(name, part):

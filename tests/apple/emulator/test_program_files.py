@@ -49,7 +49,7 @@ def machine_with(program: str, *, small: bool = False) -> Applesoft:
 
 
 def sent(machine: Applesoft) -> str:
-    """What LIST sends to a file."""
+    """Return what LIST sends to a file."""
     machine.take_output()
     machine.machine.poke(33, 40)
     machine.enter("LIST")
