@@ -13,7 +13,7 @@ import impact88
 from impact88.comparison import constants, diagnosis
 from impact88.comparison.evaluation import Edit
 from impact88.comparison.kit import frozen_vectors
-from impact88.comparison.mutants import models, sites
+from impact88.comparison.mutants import describe, models, sites
 from impact88.comparison.spellings import COLUMNS, NAMES, VELOCITIES
 
 long = pytest.mark.long
@@ -150,6 +150,12 @@ class TestEdits:
         assert any("VY" in candidate.text for candidate in candidates)
         assert all((candidate.rows != plain).any() for candidate in candidates)
 
+    @pytest.mark.parametrize(("terms", "begins"), [(3, "a"), (4, "...")])
+    def test_a_long_common_beginning_is_left_out(self, terms: int, begins: str) -> None:
+        words = " + ".join("abcd"[:terms])
+        edit = Edit("", {"gn": ""}, 2, (f"{words} - z * z",), (f"{words} + z * z",))
+        assert describe(edit, "impulses").partition(": ")[2].startswith(begins)
+
 
 class TestNoCause:
     @long
@@ -160,6 +166,18 @@ class TestNoCause:
         comparison = impact88.compare(table)
         assert comparison.differing
         assert comparison.causes == ()
+
+    @pytest.mark.parametrize("count", [1, pytest.param(2, marks=long)])
+    def test_one_row_alone_has_none_and_two_have(self, count: int) -> None:
+        is_pivot = SCENE["MU"] == -10
+        rows = np.concatenate([np.flatnonzero(~is_pivot)[:30], np.flatnonzero(is_pivot)[:count]])
+        scene = {name: column[rows] for name, column in SCENE.items()}
+        theirs = impact88.solve({**scene, "MU": np.where(is_pivot[rows], 10, scene["MU"])})
+        comparison = impact88.compare({**scene, **{n: theirs[n] for n in VELOCITIES}})
+        assert comparison.differing == count
+        assert len(comparison.causes) == (count > 1)
+        note = "one row alone disagrees: no cause is named"
+        assert (note in comparison.notes) == (count == 1)
 
     def test_too_few_digits_tell_no_cause(self) -> None:
         table = {name: column[:1] for name, column in right_table(("VAX",)).items()}

@@ -127,10 +127,12 @@ def compare_columns(
     )
     if not places.size:
         return comparison, table.wrong
-    cause_list = find_causes(table) if causes else ()
+    is_lone = places.size == 1 and table.agreeing.any()  # one row fits some edit by chance
+    cause_list = find_causes(table) if causes and not is_lone else ()
     disagreements = _disagreements(table, bool(cause_list))
     if causes and not cause_list:
-        comparison = replace(comparison, notes=(*comparison.notes, "no cause was found"))
+        note = "one row alone disagrees: no cause is named" if is_lone else "no cause was found"
+        comparison = replace(comparison, notes=(*comparison.notes, note))
     return replace(comparison, causes=cause_list, disagreements=disagreements), table.wrong
 
 

@@ -120,7 +120,7 @@ def _known_factor(sample: "Sample", program: Program, changes: Alternatives) -> 
     factors = [k for ratio in KNOWN.values() for k in (ratio, 1 / ratio)]
     alternatives = {key: list(texts) * len(factors) for key, texts in changes.items()}
     fits = sample.fits(program.run(alternatives, factors), len(factors))
-    return factors[fits.sum(1).argmax()]
+    return factors[int(fits.sum(1).argmax())]
 
 
 def _statement_constants(sample: "Sample", program: Program, part: str) -> list[Edit]:

@@ -20,6 +20,7 @@ SLOT = re.compile(r"SLOT\d+")
 RANK_MODEL = 0  # a law or a convention with a name
 RANK_NEAR = 2  # an operator, a sign, a name of one other letter
 RANK_FAR = 4  # any other name
+MIN_SHARED_WORDS = 6  # at the beginning of an edit and of what should be, that are left out
 RANK_TWIN = 3  # the same in several statements
 
 PATTERNS = {
@@ -191,18 +192,51 @@ def _form(node: ast.expr) -> str:
     return re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", ast.unparse(node))
 
 
+def _site(
+    statements: Sequence[Statement],
+    group: Sequence[tuple[Statement, ast.expr]],
+    slots: Sequence[int],
+    options: Sequence[tuple[Option, ...]],
+) -> Site:
+    """Return the site of expressions in statements, each with its slot."""
+    holes = []
+    for statement in statements:
+        nodes = {n: k for k, (s, n) in zip(slots, group, strict=True) if s is statement}
+        holes.append(_with_slots(statement.text, nodes))
+    texts = dict(zip(slots, (ast.unparse(node) for _, node in group), strict=True))
+    targets = tuple(statement.target for statement in statements)
+    return Site(targets, tuple(holes), tuple(texts.values()), tuple(options))
+
+
 def _single_sites(
     statement: Statement, names: Sequence[str], unknowns: frozenset[str]
 ) -> Iterator[Site]:
     """Yield the sites of one statement: each expression, and equal ones together."""
-    groups: dict[str, list[ast.expr]] = {}
+    groups: dict[str, list[tuple[Statement, ast.expr]]] = {}
     for node in _nodes(parse(statement.text)):
-        groups.setdefault(ast.unparse(node), []).append(node)
-    for text, nodes in groups.items():
-        options = tuple((option,) for option in _options(nodes[0], names, unknowns))
-        for chosen in [[node] for node in nodes] + ([nodes] if len(nodes) > 1 else []):
-            hole = _with_slots(statement.text, dict.fromkeys(chosen, 0))
-            yield Site((statement.target,), (hole,), (text,), options)
+        groups.setdefault(ast.unparse(node), []).append((statement, node))
+    for equal in groups.values():
+        options = [(option,) for option in _options(equal[0][1], names, unknowns)]
+        for group in [*([pair] for pair in equal), *([equal] if len(equal) > 1 else [])]:
+            yield _site([statement], group, [0] * len(group), options)
+
+
+def _groups(statements: Sequence[Statement]) -> list[tuple[tuple[Statement, ast.expr], ...]]:
+    """Return expressions of one form: at one place of statements, or in one statement."""
+    trees = [[(s, node) for node in _nodes(parse(s.text))] for s in statements]
+    if len(statements) > 1:
+        return list(zip(*trees, strict=True))
+    forms: dict[str, list[tuple[Statement, ast.expr]]] = {}
+    for statement, node in trees[0]:
+        if not isinstance(node, ast.Name | ast.Constant):
+            forms.setdefault(_form(node), []).append((statement, node))
+    groups = [g for members in forms.values() for g in subsets(members)]
+    return [g for g in groups if len({ast.unparse(node) for _, node in g}) == len(g)]
+
+
+def subsets(members: Sequence[Any]) -> list[tuple[Any, ...]]:
+    """Return the pairs of members, and all of them together."""
+    return [*combinations(members, 2), *([tuple(members)] if len(members) > 2 else [])]
 
 
 def _twin_sites(
@@ -212,37 +246,15 @@ def _twin_sites(
 
     ``pairs`` of names, such as the parts of a vector, may be written for a pair.
     """
-    trees = [[(s, node) for node in _nodes(parse(s.text))] for s in statements]
-    groups: list[tuple[tuple[Statement, ast.expr], ...]]
-    if len(statements) > 1:
-        groups = list(zip(*trees, strict=True))
-    else:
-        forms: dict[str, list[tuple[Statement, ast.expr]]] = {}
-        for statement, node in trees[0]:
-            if not isinstance(node, ast.Name | ast.Constant):
-                forms.setdefault(_form(node), []).append((statement, node))
-        groups = [g for members in forms.values() for g in combinations(members, 2)]
-        groups += [tuple(members) for members in forms.values() if len(members) > 2]
-    for group in groups:
-        texts = [ast.unparse(node) for _, node in group]
-        if len(statements) == 1 and len(set(texts)) < len(texts):
-            continue
+    for group in _groups(statements):
         rows = [_options(node, (), unknowns) for _, node in group]
-        if len({tuple(option.template for option in row) for row in rows}) > 1:
-            continue
-        options = list(zip(*rows, strict=True))
-        if tuple(texts) in pairs:
-            options += [
-                tuple(Option("a", {"a": name}) for name in pair)
-                for pair in pairs
-                if pair != tuple(texts)
-            ]
-        holes = []
-        for statement in statements:
-            slots = {node: k for k, (s, node) in enumerate(group) if s is statement}
-            holes.append(_with_slots(statement.text, slots))
-        targets = tuple(statement.target for statement in statements)
-        yield Site(targets, tuple(holes), tuple(texts), tuple(options))
+        if len({tuple(option.template for option in row) for row in rows}) == 1:
+            options = list(zip(*rows, strict=True))
+            texts = tuple(ast.unparse(node) for _, node in group)
+            for pair in pairs if texts in pairs else ():
+                if pair != texts:
+                    options.append(tuple(Option("a", {"a": name}) for name in pair))
+            yield _site(statements, group, range(len(group)), options)
 
 
 def _pairs(names: Sequence[str]) -> list[tuple[str, str]]:
@@ -279,8 +291,7 @@ def sites(name: str, part: str) -> tuple[Site, ...]:
             names.append(statement.target)
     pairs = _pairs(names)
     for members in forms.values():
-        groups = [*combinations(members, 2), *([tuple(members)] if len(members) > 2 else [])]
-        for group in groups:
+        for group in subsets(members):
             all_sites += _twin_sites(group, pairs, unknowns)
     return tuple(site for site in all_sites if site.options)
 
@@ -352,6 +363,17 @@ def describe(edit: Edit, name: str) -> str:
     target, *twins = edit.changes
     statement = statement_of(name, target)
     pairs = dict.fromkeys(zip(edit.written, edit.expected, strict=True))
-    parts = "; ".join(f"{new}, should be {old}" for new, old in list(pairs)[:2])
+    parts = "; ".join("{}, should be {}".format(*_shorten(*pair)) for pair in list(pairs)[:2])
     sentence = f"{statement.subject}: {parts}, in {target} = {statement.text}"
     return f"{sentence} (likewise in {', '.join(twins)})" if twins else sentence
+
+
+def _shorten(new: str, old: str) -> tuple[str, str]:
+    """Return two texts without the words with which both begin, if those are many."""
+    words, expected = new.split(" "), old.split(" ")
+    count, last = 0, min(len(words), len(expected)) - 1
+    while count < last and words[count] == expected[count]:
+        count += 1
+    if count < MIN_SHARED_WORDS:
+        return new, old
+    return " ".join(["...", *words[count:]]), " ".join(["...", *expected[count:]])
