@@ -86,9 +86,10 @@ class Candidate(NamedTuple):
     alternatives: tuple[str, ...] = ()
 
     @property
-    def rank(self) -> tuple[int, int]:
-        """The likeliest first."""
-        return sum(edit.rank for edit in self.edits), NAMES.index(self.name)
+    def rank(self) -> tuple[int, int, int]:
+        """The likeliest first, and of those the smallest edit."""
+        length = sum(len(text) for edit in self.edits for text in edit.written)
+        return sum(edit.rank for edit in self.edits), NAMES.index(self.name), length
 
     @property
     def text(self) -> str:

@@ -26,6 +26,9 @@ RANK_TWIN = 3  # the same in several statements
 PATTERNS = {
     "a + b": "a; b; a - b; b - a; a * b",
     "a - b": "a; b; a + b; b - a; a * b",
+    "a * b + d * e": "a * e + d * b",
+    "a * b - d * e": "a * e - d * b",
+    "1 / a + 1 / b": "1 / (a + b)",
     "a * b": "a; b; a / b; a + b; a - b; b / a",
     "a / b": "a; b; a * b; b / a; a - b; a + b",
     "a ** 2": "a; 2 * a; a ** 3; a * abs(a)",
