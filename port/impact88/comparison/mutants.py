@@ -333,6 +333,7 @@ _FORMS = {
     "positive {} taken as 0": "minimum(@, 0)",
     "{} limited to 1": "maximum(minimum(@, 1), -1)",
     "{} always 1": "0 * @ + 1",
+    "1 / {0} in place of {0}": "1 / @",
     "the remainder of {} by 90": "fmod(@, 90)",
     "the remainder of {} by 180": "fmod(@, 180)",
     "{} in radians": "@ * pi / 180",
