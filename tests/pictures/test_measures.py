@@ -116,6 +116,12 @@ def test_fewest_lines_of_a_page() -> None:
     assert typed("\n".join([line] * 7)) is not None
 
 
+def test_most_columns_of_a_page() -> None:
+    for columns, is_grid in ((130, True), (290, False)):
+        grid = typed("\n".join(["MA= 47 " * (columns // 7)] * 7))
+        assert (grid is not None and abs(grid.pitch - CELL_WIDTH) < 1) == is_grid
+
+
 def test_height_of_a_cell() -> None:
     grid = typed("\n".join(["MA= 1234 MB= 56789 IA= 12"] * 7))
     assert grid is not None

@@ -22,6 +22,7 @@ CELL_WIDTH = 16  # pixels of a resampled cell: 3 and 8 of a dot matrix are disti
 SLACK = 2  # pixels kept around a cell, for the shifts that are tried
 MIN_LINES = 6  # lines of type of a page
 WIDEST = 1.1  # widest pitch, in heights of a line; pages have 0.6 to 0.97
+MAX_COLUMNS = 200  # pitches across a page: two printouts side by side have 180; bounds memory
 CELL_HEIGHT = 1.7  # height of a cell, in heights of a line
 PIECE = 12  # length of the piece of a line whose gaps and height are measured at once, cells
 
@@ -205,7 +206,7 @@ def grid_of(ink: Image, points: Points) -> Grid | None:
         return None
     members = [np.flatnonzero((level >= top) & (level < foot)) for top, foot in lines]
     xs, ys = [x[inked] for inked in members], [y[inked] for inked in members]
-    pitch = _pitch(xs, height)
+    pitch = _pitch(xs, height, span)
     if not pitch:
         return None
     bend, clarity = _fit_bend(_phasors(xs, ys, pitch, span), tilt[0], pitch, span)
@@ -268,14 +269,14 @@ def _gaps(x: Floats, pitch: float) -> Floats:
     return np.asarray(low + (np.concatenate(gaps) + 0.5) * step if gaps else [low])
 
 
-def _pitch(xs: list[Floats], height: float) -> float:
+def _pitch(xs: list[Floats], height: float, span: float) -> float:
     """Return the period of the gaps in pixels, 0 where there is none: the largest of the summed
     power spectrum."""
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
     power = np.sum([np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum() for gap in gaps], axis=0)
     last = int(2 * WIDEST * height)
-    first = max(last // 2, 2)  # an octave, so that it is no harmonic
+    first = max(last // 2, int(2 * span / MAX_COLUMNS), 2)  # an octave, so that it is no harmonic
     chosen = np.arange(size // last, size // first + 1)
     return float(size / chosen[np.argmax(power[chosen])] / 2) if len(chosen) else 0.0
 
