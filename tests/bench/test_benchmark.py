@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 
 import numpy as np
 import pytest
@@ -53,9 +54,10 @@ def test_relative_errors_are_in_units_of_the_largest_velocity_and_spin():
 
 def test_the_command_writes_a_page_or_json(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(benchmark, "METHODS", benchmark.METHODS[1:3])
-    monkeypatch.setattr("impact88.cli.bench.QUICK_SCENES", 3)
+    few = partial(benchmark.measure, scenes=3, repeats=1, effort=0.05)
+    monkeypatch.setattr(benchmark, "measure", few)
     page = tmp_path / "measurements.md"
-    assert main(["bench", "--quick", "-o", str(page)]) == 0
+    assert main(["bench", "-o", str(page)]) == 0
     assert "| cars | replay: the Apple's arithmetic |" in page.read_text("utf-8")
-    assert main(["bench", "--quick", "--json"]) == 0
+    assert main(["bench", "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["measurements"]) == 4

@@ -31,9 +31,9 @@ OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu")
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     """Serve on a free port."""
-    with listening_socket(0) as listener:
+    with listening_socket() as listener:
         number = listener.getsockname()[1]
-        server = make_server(listener, number, TOKEN)
+        server = make_server(listener, TOKEN)
         Thread(target=server.run, daemon=True).start()
         yield f"http://127.0.0.1:{number}/{TOKEN}/"
         server.close()

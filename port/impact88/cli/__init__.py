@@ -11,7 +11,7 @@ COMMANDS = {
     "selfcheck": "replay what a real Apple II Plus did: pass or fail",
     "basic": "the ] prompt of an Apple II Plus, or any Applesoft program",
     "web": "the same in a browser, reachable from this computer only",
-    "chapter": "the chapter's other problems: colinear, barrier, delta-v, staged, example",
+    "chapter": "the chapter's other problems: colinear, delta-v, staged, example",
     "bench": "measure run time against error on this computer",
 }
 """One line of help for each command, in the order of the overview. `impact88.cli.NAME` has the
@@ -26,7 +26,7 @@ GONE = {
     "schema": "the guide's page on JSON forms",
     "completion": "impact88 help, which lists the commands",
     "colinear": "impact88 chapter colinear",
-    "barrier": "impact88 chapter barrier",
+    "barrier": "impact88 scene barrier -o FILE.toml, filled in, and impact88 solve",
     "delta-v": "impact88 chapter delta-v",
     "staged": "impact88 chapter staged",
     "example": "impact88 chapter example",

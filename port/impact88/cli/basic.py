@@ -2,10 +2,9 @@
 impact88 basic crash.bas < replies.txt  run a program, its INPUT from a file
 
 The ] prompt of an Apple II Plus: LIST the listing, retype a line, RUN. FILE.bas holds numbered
-lines as typed or as LIST prints them, or a tokenised program. At the prompt LOAD FILE reads one and
-SAVE FILE writes a new text; control-C breaks a program, control-D leaves (Windows: control-Z,
-RETURN). Graphics, tape, paddles and machine code end in ?SYNTAX ERROR; disk commands are passed
-over; both are named on stderr.
+lines as typed or as LIST prints them, or a tokenised program. At the prompt LOAD FILE reads one;
+control-C breaks a program, control-D leaves (Windows: control-Z, RETURN). Graphics, tape, paddles
+and machine code end in ?SYNTAX ERROR; disk commands are passed over; both are named on stderr.
 
 exit status: 0 the program ended, 1 an Applesoft error, 2 bad input"""
 
@@ -13,14 +12,13 @@ from __future__ import annotations
 
 import signal
 import sys
-from os.path import exists
 from types import FrameType
 
 from ..apple.applesoft.console import EndOfInput
 from ..apple.applesoft.errorcodes import ApplesoftError
 from ..apple.emulator.emulator import Applesoft
 from ..errors import UserError, note
-from ..files import display_name, packaged_bytes, read_bytes, replacing, typed_line
+from ..files import display_name, packaged_bytes, read_bytes, typed_line
 from ..program.run import page
 from .options import Args, InputPath, option
 
@@ -68,20 +66,15 @@ class Terminal:
             raise UserError(f"{error}; {advice}", source) from None
 
     def do_disk_command(self, _: str) -> bool:
-        """Do LOAD and SAVE, which the disk system takes. Returns False for any other line."""
-        word, _, name = self.line.strip().partition(" ")
-        command = word.upper()
+        """Do LOAD, which the disk system takes. Returns False for any other line."""
+        command, _, name = self.line.strip().partition(" ")
+        if command.upper() != "LOAD":
+            return False
         try:
-            if command == "LOAD":
-                self.load(read_bytes(name, MAX_PROGRAM_BYTES), name)
-            elif command == "SAVE":
-                if exists(name):
-                    raise UserError("exists; expected a new name", name)
-                with replacing(name) as file:
-                    file.write(self.apple.source())
+            self.load(read_bytes(name, MAX_PROGRAM_BYTES), name)
         except UserError as error:
             note("basic", str(error))
-        return command in ("LOAD", "SAVE")
+        return True
 
 
 def main(args: Args) -> int:

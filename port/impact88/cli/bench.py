@@ -1,5 +1,4 @@
 """impact88 bench                          errors and run times of five methods, two minutes
-impact88 bench --quick                  fewer scenes, fewer repeats
 impact88 bench -o FILE.md               into a file: times count on a quiet computer only
 impact88 bench --json
 
@@ -12,14 +11,10 @@ from __future__ import annotations
 from itertools import count
 
 from ..errors import library
-from .options import JSON, OUTPUT, Args, flag
+from .options import JSON, OUTPUT, Args
 from .output import progress, show
 
-# of --quick
-QUICK_SCENES = 100
-QUICK_REPEATS = 3
-QUICK_EFFORT = 0.05  # of the scenes that are timed
-OPTIONS = (flag("--quick", "fewer scenes and repeats"), JSON, OUTPUT)
+OPTIONS = (JSON, OUTPUT)
 
 
 def main(args: Args) -> None:
@@ -28,11 +23,8 @@ def main(args: Args) -> None:
     from ..bench import benchmark as bench
 
     computer = bench.computer()
-    scenes, repeats, effort = bench.ERROR_SCENES, bench.REPEATS, 1.0
-    if args.quick:
-        scenes, repeats, effort = QUICK_SCENES, QUICK_REPEATS, QUICK_EFFORT
-    steps, total = count(1), bench.count_steps(repeats)
+    steps, total = count(1), bench.count_steps(bench.REPEATS)
     with progress("bench") as update:
-        rows = bench.measure(lambda: update(0, next(steps) / total), scenes, repeats, effort)
+        rows = bench.measure(lambda: update(0, next(steps) / total))
     record = {"computer": computer, "measurements": [row._asdict() for row in rows]}
     show(args.json, "bench", record, [bench.markdown(rows, computer)])

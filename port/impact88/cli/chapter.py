@@ -1,15 +1,12 @@
 """impact88 chapter example                       Section VII, step by step
 impact88 chapter colinear --set MA=155 --set MB=99 --set E=.07 --set UN=-57 --set VN=0
-impact88 chapter barrier car.toml
-impact88 chapter delta-v crash.toml --like 90-side
+impact88 chapter delta-v crash.toml
 impact88 chapter staged --table 2              typical E, EM and MU
 
 colinear   vehicles that do not turn: MA MB E, velocities along n before (UN VN) or after (VAN VBN);
            with sliding MUP (the signed P_t/P_n) and UT VT or VAT VBT along t (Equations 9 to 12)
-barrier    vehicle A against a rigid barrier: DA PA TA MA IA GA E MU EM UX UY WA; a file that leaves
-           some of them open, or gives VAX VAY WAF, is reconstructed
-delta-v    Equation 19: MA MB, speeds SA SB and the loss (LOSS in percent, EL as energy, or --like)
-           give DVA DVB
+delta-v    Equation 19: MA MB, speeds SA SB and the loss (LOSS in percent, or EL as energy) give
+           DVA DVB
 staged     Table 2 of the eleven staged collisions beside its recomputation
 example    the reconstruction of Section VII beside the printed numbers
 
@@ -19,26 +16,17 @@ exit status: 0 done; 1 a printed number that nothing explains, or an impact that
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from math import isfinite
 from typing import Any
 
 from ..cases.case import Case
-from ..chapter.staged import collisions
 from ..errors import UserError
-from ..report.answers import Answer, ask, forward_answer
+from ..report.answers import Answer, forward_answer
 from . import options
 from .answers import show_answer
 from .options import choice, flag, option
 from .output import show
 
-CATEGORIES = {
-    "60-side": "60° FRONT TO SIDE",
-    "90-side": "90° FRONT TO SIDE",
-    "front": "10° FRONT TO FRONT",
-    "rear": "10° FRONT TO REAR",
-}
-"""Words of --like, and the categories of Table 2."""
 EQUATION_19 = (
     "Equation 19 with the factor 2/3 (it is not printed, but Table 2 has it)",
     "an estimate: rms 3.8, largest 8.2 ft/s over the 22 velocity changes of Table 2; untested "
@@ -50,7 +38,7 @@ Values = Mapping[str, Any]
 """Values in base units by name."""
 
 
-def _colinear(case: Case, values: Values, like: str) -> Answer:
+def _colinear(case: Case, values: Values) -> Answer:
     """Return the impact of vehicles that do not turn, forward or backward."""
     from ..chapter.colinear import FINAL, INITIAL, colinear, colinear_inverse
 
@@ -64,26 +52,8 @@ def _colinear(case: Case, values: Values, like: str) -> Answer:
     return forward_answer(case, "a colinear impact, Equations 9 to 12", results, bits)
 
 
-def _barrier(case: Case, values: Values, like: str) -> Answer:
-    """Return the impact of vehicle A on a barrier."""
-    from ..chapter.barrier import BARRIER
-
-    return ask(case.with_({name: f"{value:g}" for name, value in BARRIER.items()}, "barrier"))
-
-
-def _delta_v(case: Case, values: Values, like: str) -> Answer:
-    """Return velocity changes by Equation 19; with ``like`` for the least and the greatest loss of
-    a category of Table 2."""
-    if not like:
-        return _equation_19(case, values)
-    losses = [c.table2["loss"] for c in collisions() if c.category == CATEGORIES[like]]
-    least, greatest = (_equation_19(case, {**values, "LOSS": f(losses)}) for f in (min, max))
-    question = f"{least.question}: least and most in Table 2, {CATEGORIES[like]}"
-    return replace(least, question=question, alternatives=(greatest,))
-
-
-def _equation_19(case: Case, values: Values) -> Answer:
-    """Return the velocity changes that follow from one loss of energy."""
+def _delta_v(case: Case, values: Values) -> Answer:
+    """Return the velocity changes that follow from a loss of energy, by Equation 19."""
     from ..chapter.deltav import delta_v, loss_of_energy
 
     loss = values["LOSS"] if "LOSS" in values else loss_of_energy(values)
@@ -103,7 +73,7 @@ def _collision_tables(args: options.Args) -> int:
     record = {
         "problem": "staged",
         "emendations": staged.emendations(),
-        "collisions": collisions(),
+        "collisions": staged.collisions(),
         "comparison": cells,
         "validation": [check._asdict() for check in validation.checks()],
     }
@@ -123,13 +93,12 @@ def _example(args: options.Args) -> int:
     return int(any(number.agrees is False for step in steps() for number in step.numbers))
 
 
-IMPACTS = {"colinear": _colinear, "barrier": _barrier, "delta-v": _delta_v}
+IMPACTS = {"colinear": _colinear, "delta-v": _delta_v}
 """Problems that are posed by a case."""
 TABLES = {"staged": _collision_tables, "example": _example}
 OPTIONS = (
     option("problem", choices=(*IMPACTS, *TABLES), help="the problem, see above"),
     *options.CASE,
-    choice("--like", (*CATEGORIES,), "delta-v: losses of staged collisions of this kind"),
     choice("--table", ("1", "2"), "staged: a table as emended"),
     flag("--validation", "staged: crash tests published since, recomputed"),
     options.JSON,
@@ -143,4 +112,4 @@ def main(args: options.Args) -> int:
         return TABLES[args.problem](args)
     case = options.case_of(args)
     values = {name: amount.value for name, amount in case.entries.items()}
-    return show_answer(IMPACTS[args.problem](case, values, args.like), args.json)
+    return show_answer(IMPACTS[args.problem](case, values), args.json)

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 
-from ..errors import UserError, note, one_line
+from ..errors import UserError, note
 from ..files import ESCAPED
 from ..names import check_names, did_you_mean
 from ..version import __version__
@@ -80,13 +80,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         _discard_output()
         return BROKEN_PIPE
+    except UserError as error:
+        note(command, str(error))
+        return UNUSABLE
+    except (RecursionError, MemoryError):
+        note(command, "the input is too large or nested too deeply; expected a smaller one")
+        return UNUSABLE
+    except OSError as error:  # those of files are UserErrors
+        note(command, f"standard output: {error.strerror or error}")
+        _discard_output()
+        return UNUSABLE
     except Exception as error:
-        if reason := _reason(error):
-            note(command, reason)
-            if isinstance(error, OSError):
-                _discard_output()
-            return UNUSABLE
-        note(command, _internal_error(error))
+        if os.environ.get("IMPACT88_DEBUG") == "1":
+            sys.excepthook(*sys.exc_info())
+        advice = "(IMPACT88_DEBUG=1 prints the traceback)"
+        note(command, f"internal error; please report it: {error!r} {advice}")
         return INTERNAL
 
 
@@ -124,7 +132,7 @@ def _run(name: str, words: Sequence[str]) -> int:
         hint = did_you_mean(word, options)
         parser.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     check_files(args)
-    with printing_to(getattr(args, "output", None) or "-"):
+    with printing_to("-" if hasattr(module, "WRITES") else getattr(args, "output", "-")):
         return int(module.main(args) or 0)
 
 
@@ -140,28 +148,3 @@ def _discard_output() -> None:
     """Send what Python would still flush to nowhere: it would complain again."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _reason(error: Exception) -> str:
-    """Return the message for an error of the input or the system; "" for an internal error."""
-    if isinstance(error, UserError):
-        return str(error)
-    if isinstance(error, OSError):
-        place = one_line(str(error.filename)) if error.filename else "standard output"
-        return f"{place}: {error.strerror or error}"
-    if isinstance(error, RecursionError | MemoryError):
-        return "the input is too large or nested too deeply; expected a smaller one"
-    return ""
-
-
-def _internal_error(error: Exception) -> str:
-    """Return an internal error and its place in one line; print the traceback on request."""
-    import traceback
-
-    if os.environ.get("IMPACT88_DEBUG") == "1":
-        traceback.print_exception(error)
-    *_, frame = traceback.extract_tb(error.__traceback__)
-    message = (
-        f"{type(error).__name__}: {error} at {os.path.basename(frame.filename)}:{frame.lineno}"
-    )
-    return f"internal error; please report it: {message} (IMPACT88_DEBUG=1 prints the traceback)"

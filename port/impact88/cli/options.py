@@ -67,36 +67,28 @@ FILE = option(
 SAMPLE = choice("--sample", ("1", "2", "3"), "the scene of a published run")
 SET = texts("--set", "NAME=VALUE", "change an entry; nothing removes it")
 UNITS = choice("--units", ("us", "chapter", "metric", "si"), "units of numbers without one")
-AXES = choice("--axes", ("listing", "sae"), "axes, if the file names none")
-HEADINGS = choice("--headings", ("listing", "compass"), "headings, if the file names none")
-CASE = (FILE, SAMPLE, SET, UNITS, AXES, HEADINGS)
+CASE = (FILE, SAMPLE, SET, UNITS)
 """Options that give one case, see `case_of`."""
 JSON = flag("--json", "print JSON")
 OUTPUT = option(
-    "-o", "--output", type=OutputPath, metavar="FILE", help="write here (default: stdout)"
-)
-"""The file for what a command prints: written whole or not at all."""
-TARGET = option(
     "-o",
     "--output",
-    dest="target",
     type=OutputPath,
-    default=OutputPath("-"),
+    default="-",
     metavar="FILE",
     help="write here (default: stdout)",
 )
-"""The file that a command writes itself."""
+"""The file for what a command prints, written whole or not at all; a module with ``WRITES`` writes
+it itself."""
 
 
 def check_files(args: Args) -> None:
     """Raise UserError if a file to write is also read, or written twice."""
     inputs = ["-"]
-    outputs: dict[str, str] = {}
-    for name, value in vars(args).items():
+    for value in vars(args).values():
         paths = value if isinstance(value, list) else [value]
         inputs += [path for path in paths if isinstance(path, InputPath)]
-        if isinstance(value, OutputPath):
-            outputs["-o" if name == "target" else f"--{name}"] = value
+    outputs = {f"--{n}": path for n, path in vars(args).items() if isinstance(path, OutputPath)}
     check_apart(inputs, outputs)
 
 
@@ -134,11 +126,6 @@ def changes_of(args: Args) -> dict[str, str]:
     return pairs_of(args.set, "--set", "NAME=VALUE, such as --set MU=.5")
 
 
-def view_of(args: Args) -> dict[str, str]:
-    """Return the words of ``--units``, ``--axes`` and ``--headings``."""
-    return {name: getattr(args, name) for name in ("units", "axes", "headings")}
-
-
 def case_of(args: Args) -> Case:
     """Return the case that the options give: a file or a published run, changed by ``--set``, or
     what ``--set`` gives alone. Raises UserError if none or two are given."""
@@ -152,9 +139,9 @@ def case_of(args: Args) -> Case:
         scene = sample(int(args.sample))
         case = Case.of({**scene, "title": scene.title, "units": "chapter"}, scene.source)
     elif args.file:
-        case = Case.load(args.file, **view_of(args))
+        case = Case.load(args.file, units=args.units)
     elif args.set:
-        case = Case.of({}, "--set", View.of(**view_of(args)))
+        case = Case.of({}, "--set", View.of(units=args.units))
     else:
         raise UserError("no collision is given; expected a FILE.toml, --sample N, or --set")
     return case.with_(changes_of(args), "--set") if args.set else case

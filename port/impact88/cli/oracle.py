@@ -5,9 +5,9 @@ impact88 oracle --kit kit                        1,000 frozen test vectors with 
 
 Answers each line {"id": ..., "scene": {"MA": 143.5, ...}} with one: the printout; each result as
 Applesoft prints and stores it, in double precision and to 30 digits; what rounding may change in
-it; condition and warnings. A line that cannot be used is answered with what is wrong. The 30 digits
-need pip install 'impact88[oracle]'; --no-reference leaves them out. `impact88 compare --kit ID`
-judges the answers of another program to the vectors.
+it; condition and warnings. A line that cannot be used is answered with what is wrong. `impact88
+compare --kit ID` judges the answers of another program to the vectors. Needs pip install
+'impact88[oracle]'.
 
 exit status: 0 every line answered; 1 some could not be used; 2 no usable input"""
 
@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from ..errors import UserError, library
 from ..files import open_bytes
-from .options import OUTPUT, Args, InputPath, flag, option
-from .output import progress, to_json
+from .options import OUTPUT, Args, InputPath, option
+from .output import to_json
 
 OPTIONS = (
     option(
@@ -27,7 +27,6 @@ OPTIONS = (
         metavar="SCENES.jsonl",
         help="scenes, one JSON object a line (default: standard input)",
     ),
-    flag("--no-reference", "leave the 30 digits out"),
     option("--kit", metavar="FOLDER", help="write the kit into a folder"),
     OUTPUT,
 )
@@ -42,16 +41,14 @@ def main(args: Args) -> int:
         return 0
     from ..comparison.oracle import answer_lines
 
-    if not args.no_reference:
-        library("mpmath", "oracle", "the reference of 30 digits")
+    library("mpmath", "oracle", "the reference of 30 digits")
     answers = failures = 0
-    with progress("oracle") as update, open_bytes(args.scenes) as file:
+    with open_bytes(args.scenes) as file:
         lines = (line.decode("utf-8-sig", "replace") for line in file)
-        for answer in answer_lines(lines, not args.no_reference):
+        for answer in answer_lines(lines):
             failures += "error" in answer
             answers += "error" not in answer
             print(to_json(answer), flush=True)  # a program may ask line by line
-            update(answers, None)
     if not answers:
         raise UserError('no line can be used; expected lines such as {"id": 1, "scene": {...}}')
     return int(failures > 0)

@@ -12,9 +12,10 @@ exit status: 0 written; 1 written, but no impact that physics allows agrees; 2 b
 
 from __future__ import annotations
 
-from .options import CASE, TARGET, Args, case_of
+from .options import CASE, OUTPUT, Args, case_of
 
-OPTIONS = (*CASE, TARGET)
+OPTIONS = (*CASE, OUTPUT)
+WRITES = True
 
 
 def main(args: Args) -> int:
@@ -23,5 +24,5 @@ def main(args: Args) -> int:
     from ..report.casepage import write
 
     answer = ask(case_of(args))
-    write(answer, args.target)
+    write(answer, args.output)
     return int(not answer.possible)

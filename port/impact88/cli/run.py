@@ -35,7 +35,7 @@ OPTIONS = (
 def main(args: Args) -> int:
     """Run the program."""
     arithmetic = args.arithmetic or "applesoft"
-    if args.file or args.sample or args.set:
+    if args.file or args.sample or args.set or args.json or args.listing:
         scene = _scene(args)
         record = (
             _run_copy(args.listing, scene, arithmetic) if args.listing else run(scene, arithmetic)
@@ -44,8 +44,6 @@ def main(args: Args) -> int:
             show(True, "run", {**record._asdict(), "floats": record.floats}, ())
         else:
             sys.stdout.write(record.page)
-    elif args.json or args.listing:
-        raise UserError("--json and --listing need a scene; expected a FILE.toml or --sample N")
     else:
         record = _ask(arithmetic)
     if record.error and sys.stdout.isatty():

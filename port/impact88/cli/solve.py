@@ -23,7 +23,7 @@ from ..names import RESULTS
 from .options import (
     CASE,
     JSON,
-    TARGET,
+    OUTPUT,
     Args,
     case_of,
     changes_of,
@@ -31,15 +31,13 @@ from .options import (
     flag,
     input_file,
     names_of,
-    option,
     pairs_of,
     printing_to,
     texts,
-    view_of,
 )
 from .output import progress, say
 
-FORMATS = ("csv", "jsonl", "parquet", "xlsx")
+WRITES = True
 TABLES = (".csv", ".tsv", ".jsonl", ".ndjson", ".parquet", ".xlsx")
 """Endings of files that take a table."""
 OPTIONS = (
@@ -47,27 +45,25 @@ OPTIONS = (
     texts("--results", "NAMES", "the results wanted: A,B,..."),
     flag("--full", "every result of FILE.toml"),
     JSON,
-    TARGET,
+    OUTPUT,
     texts("--sweep", "NAME=LOW:HIGH:COUNT", "a table of FILE.toml in which a value changes"),
     choice("--arithmetic", ("float64", "applesoft"), "of a table; applesoft: the 1988 program's"),
     input_file("--scene", "FILE.toml", "values for the columns that a table lacks"),
     flag("--results-only", "leave the scene's columns out"),
-    option("--from", dest="source", default="", choices=("toml", *FORMATS), help="format of FILE"),
-    choice("--to", FORMATS, "format of the table to write"),
 )
 
 
 def main(args: Args) -> int:
     """Answer a collision, or solve a table."""
-    is_table = bool(args.file) and args.source != "toml" and not args.file.lower().endswith(".toml")
-    if is_table or args.sweep or args.arithmetic or args.target.lower().endswith(TABLES):
+    is_table = bool(args.file) and not args.file.lower().endswith(".toml")
+    if is_table or args.sweep or args.arithmetic or args.output.lower().endswith(TABLES):
         return _solve_table(args, is_table)
     from ..report.answers import ALL, ask
     from .answers import show_answer
 
     names = names_of(args.results, ALL, "--results")
     answer = ask(case_of(args), ALL if args.full else names)
-    with printing_to(args.target):
+    with printing_to(args.output):
         return show_answer(answer, args.json)
 
 
@@ -80,7 +76,7 @@ def _solve_table(args: Args, is_table: bool) -> int:
 
     if args.json or args.full or (is_table and args.sweep):
         raise UserError("--json, --full and --sweep are for a FILE.toml, not for a table")
-    table, view = args.file, View.of(**view_of(args))
+    table, view = args.file, View.of(units=args.units)
     if is_table:
         args.file = args.scene
     is_case = args.file or args.sample or args.set
@@ -89,15 +85,13 @@ def _solve_table(args: Args, is_table: bool) -> int:
     with progress("solve") as update:
         results = solve_table(
             table if is_table else sweep_table(case, ranges),
-            args.target,
+            args.output,
             names_of(args.results, RESULTS, "--results"),
             case=case,
             replaced=[*changes_of(args)] if is_table else (),
             view=view,
             arithmetic=args.arithmetic or "float64",
             results_only=args.results_only,
-            source_format=args.source,
-            target_format=args.to,
             progress=update,
         )
     remarks = dict.fromkeys([*case.remarks, *results.remarks])

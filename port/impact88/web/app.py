@@ -6,14 +6,12 @@ the same forms give whole pages. Nothing of a request is kept.
 
 from __future__ import annotations
 
-import os
-import traceback
 from collections.abc import Mapping
 from typing import Any
 
 from flask import Flask, Response, abort, render_template, request
-from jinja2 import ChoiceLoader
-from werkzeug.exceptions import HTTPException
+from jinja2 import ChoiceLoader, PackageLoader
+from werkzeug.exceptions import InternalServerError
 
 from ..cases import TEMPLATES, Case, View
 from ..cases.scenefile import ABOUT, INPUTS, read_toml
@@ -31,7 +29,8 @@ from .questions import answer_in_time
 DEFAULT_KIND = "planar"
 HEADINGS = ("title", "case", "examiner", "date")
 """Entries for a report."""
-VIEW = ("units", "axes", "headings")
+SHOWN = (*HEADINGS, "units", "axes", "headings")
+"""Entries about the whole case that have a field."""
 
 
 def application(port: int, token: str) -> Flask:
@@ -39,11 +38,10 @@ def application(port: int, token: str) -> Flask:
     app = Flask(__name__, static_url_path=f"/{token}/static")
     app.config.update(MAX_CONTENT_LENGTH=MAX_BODY, MAX_FORM_MEMORY_SIZE=MAX_BODY)
     reports = environment()
-    app.jinja_options = {"trim_blocks": True, "lstrip_blocks": True}
-    app.jinja_loader = ChoiceLoader([app.jinja_loader, reports.loader])  # type: ignore[list-item]
-    app.jinja_env.filters.update(reports.filters)
+    loader = ChoiceLoader([PackageLoader(__package__), reports.loader])  # type: ignore[list-item]
+    app.jinja_env = reports.overlay(loader=loader)  # type: ignore[assignment]
     context = {"root": f"/{token}", "inputs": INPUTS, "kinds": TEMPLATES, "headings": HEADINGS}
-    app.jinja_env.globals.update(reports.globals, **context)
+    app.context_processor(lambda: context)
 
     @app.before_request
     def check() -> None:
@@ -56,7 +54,8 @@ def application(port: int, token: str) -> Flask:
         response.headers.update(HEADERS)
         return response
 
-    app.register_error_handler(Exception, _problem)
+    app.register_error_handler(UserError, lambda error: _problem(str(error), 422))
+    app.register_error_handler(500, _internal_error)
     for path, page in {"": printout, "collision": collision, "1988": program}.items():
         app.get(f"/{token}/{path}")(page)
     for reply in (verify, verification, fields, answer, report, scene, printed):
@@ -64,16 +63,14 @@ def application(port: int, token: str) -> Flask:
     return app
 
 
-def _problem(error: Exception) -> Any:
-    """Return the message on bad input, or on an error of this program; refusals as they are."""
-    if isinstance(error, HTTPException):
-        return error
-    if isinstance(error, UserError):
-        return _show("problem.html", message=printable(str(error))), 422
-    if os.environ.get("IMPACT88_DEBUG") == "1":
-        traceback.print_exception(error)
-    message = f"internal error; please report it: {error!r} (IMPACT88_DEBUG=1 prints its place)"
-    return _show("problem.html", message=printable(message)), 500
+def _problem(message: str, status: int) -> tuple[str, int]:
+    """Return the message on bad input, or on an error of this program."""
+    return _show("problem.html", message=message), status
+
+
+def _internal_error(error: InternalServerError) -> tuple[str, int]:
+    """Return the message on an error of this program, whose place Flask prints on stderr."""
+    return _problem(f"internal error; please report it: {error.original_exception!r}", 500)
 
 
 def _show(part: str, whole: str = "layout.html", **context: Any) -> str:
@@ -127,25 +124,26 @@ def _fields(texts: Mapping[str, str], kind: str = DEFAULT_KIND) -> dict[str, Any
     """Return what the fields of a kind show; entries without a field follow as text."""
     kind = kind if kind in TEMPLATES else DEFAULT_KIND
     names = TEMPLATES[kind].entries
-    lines = [f"{n} = {x}" for n, x in texts.items() if n not in (*names, *HEADINGS, *VIEW)]
+    lines = [f"{n} = {x}" for n, x in texts.items() if n not in (*names, *SHOWN)]
     return {
         "kind": kind,
         "names": names,
         "values": names | dict(texts),
         "more": "\n".join(lines),
-        "view": View.of(**{name: texts.get(name) for name in VIEW}),
+        "view": View.of(units=texts.get("units")),
     }
 
 
 def _texts() -> dict[str, str]:
     """Return the entries of a form: of its fields, and of lines NAME = VALUE. Raises UserError."""
     form = request.form
-    texts = {n: form[n].strip() for n in (*ABOUT, *INPUTS) if form.get(n, "").strip()}
-    lines = [line.partition("=") for line in form.get("more", "").splitlines() if line.strip()]
-    for name, separator, _ in lines:
+    texts = {name: form[name] for name in (*ABOUT, *INPUTS) if form.get(name, "").strip()}
+    for line in filter(str.strip, form.get("more", "").splitlines()):
+        name, separator, text = line.partition("=")
         if not separator:
-            raise UserError(f"{name.strip()!r}; expected NAME = VALUE", "more entries")
-    return texts | {name.strip(): text.strip(" \"'") for name, _, text in lines}
+            raise UserError(f"{line!r}; expected NAME = VALUE", "more entries")
+        texts[name.strip()] = text.strip(" \"'")
+    return texts
 
 
 def fields() -> str:
@@ -201,5 +199,5 @@ def program() -> str:
 def printed() -> str:
     """Return what the 1988 program prints for a form's case."""
     case = _case()
-    page = answer_in_time(lambda: run(case.texts).page)
+    page = run(case.texts).page
     return _show("printed.html", "program.html", printed=page, case=case, texts=case.texts)

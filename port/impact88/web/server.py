@@ -10,7 +10,7 @@ import sys
 from threading import Thread
 from typing import Any
 
-from ..errors import UserError, library
+from ..errors import library
 from .guard import MAX_BODY
 
 HOST = "127.0.0.1"
@@ -20,30 +20,27 @@ BACKLOG = 512  # connections that wait to be accepted
 SILENCE = 20  # seconds without a byte after which a connection is closed
 
 
-def serve(port: int = 0, open_browser: bool = True) -> None:
+def serve(open_browser: bool = True) -> None:
     """Serve the web page on this computer until it is interrupted.
 
     The address, which contains a random token, is printed on standard output.
 
     Parameters
     ----------
-    port : int, default 0
-        The port; 0 takes a free one.
     open_browser : bool, default True
         Open the page in the default browser.
 
     Raises
     ------
     UserError
-        If Flask or waitress is not installed, or the port is not available.
+        If Flask or waitress is not installed.
     """
     for name in ("flask", "waitress"):
         library(name, "web", "the web page")
-    with listening_socket(port) as listener:
-        number: int = listener.getsockname()[1]
+    with listening_socket() as listener:
         token = secrets.token_urlsafe(18)
-        address = f"http://{HOST}:{number}/{token}/"
-        server = make_server(listener, number, token)
+        address = f"http://{HOST}:{listener.getsockname()[1]}/{token}/"
+        server = make_server(listener, token)
         print(address, flush=True)
         print("This address works on this computer only. Ctrl-C ends it.", file=sys.stderr)
         if open_browser:
@@ -57,16 +54,12 @@ def serve(port: int = 0, open_browser: bool = True) -> None:
             server.close()
 
 
-def listening_socket(port: int) -> socket.socket:
-    """Return a socket that listens on this computer only. Raises UserError."""
-    try:
-        return socket.create_server((HOST, port), backlog=BACKLOG)
-    except (OSError, OverflowError) as error:
-        message = f"port {port} is not available: {error}; expected another, or 0 for a free one"
-        raise UserError(message, "--port") from None
+def listening_socket() -> socket.socket:
+    """Return a socket that listens on a free port, on this computer only."""
+    return socket.create_server((HOST, 0), backlog=BACKLOG)
 
 
-def make_server(listener: socket.socket, port: int, token: str) -> Any:
+def make_server(listener: socket.socket, token: str) -> Any:
     """Return the server of a listening socket; ``run`` serves."""
     from waitress.server import create_server
 
@@ -77,7 +70,7 @@ def make_server(listener: socket.socket, port: int, token: str) -> Any:
     mimetypes.add_type("text/css", ".css")
     logging.getLogger("waitress").setLevel(logging.ERROR)
     return create_server(
-        application(port, token),
+        application(listener.getsockname()[1], token),
         sockets=[listener],
         threads=THREADS,
         ident=None,
