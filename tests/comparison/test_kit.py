@@ -15,7 +15,7 @@ import pytest
 
 import impact88
 from impact88.apple import captured
-from impact88.cases.units import View
+from impact88.cases import Case, View
 from impact88.comparison import kit, oracle, selfcheck, words
 from impact88.comparison.agreement import COMPARED
 from impact88.comparison.spellings import VELOCITIES
@@ -191,8 +191,9 @@ class TestTables:
 
     def test_what_solve_writes_passes_and_is_compared(self, tmp_path: Path) -> None:
         (tmp_path / "a.csv").write_text(f"{','.join(impact88.names.SCENE)}\n{US_ROW}\n")
+        case = Case.of({}, view=View("us"))
         for name in ("b.csv", "b.jsonl"):
-            solve_table(str(tmp_path / "a.csv"), str(tmp_path / name), view=View("us"))
+            solve_table(str(tmp_path / "a.csv"), str(tmp_path / name), case=case)
             comparison = impact88.compare(tmp_path / name, units="us")
             assert comparison.passed
             assert comparison.results == COMPARED

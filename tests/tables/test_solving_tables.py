@@ -44,7 +44,7 @@ def test_cells_with_units() -> None:
     del columns["UX"]
     columns = {"UX [ft/s]": ["-29.04", "-19.8 mph", "-8.851392 m/s"], **columns}
     columns = {CHAPTER.heading(n) if n in SCENE else n: c for n, c in columns.items()}
-    out, bad, _ = solve_columns(columns, "VAX", view=CHAPTER)
+    out, bad, _ = solve_columns(columns, "VAX", case=Case.of({}, view=CHAPTER))
     assert not bad
     reference = solve(NUMBERS, "VAX")["VAX"]
     assert out["VAX [ft/s]"] == pytest.approx([reference] * 3, rel=1e-13)
@@ -152,7 +152,9 @@ def test_applesoft_takes_the_units_of_headings() -> None:
 def test_applesoft_types_converted_digits_exactly() -> None:
     case = Case.of({**SAMPLE, "units": "chapter"}).with_(UX="-19.8 mph", MA="4617 lb")
     columns = {n: [t] for n, t in SAMPLE.items()} | {"UX": ["-19.8 mph"], "MA": ["4617 lb"]}
-    out, bad, _ = solve_columns(columns, "VAX KI", arithmetic="applesoft", view=CHAPTER)
+    out, bad, _ = solve_columns(
+        columns, "VAX KI", arithmetic="applesoft", case=Case.of({}, view=CHAPTER)
+    )
     assert not bad
     reference = impact88.replay(dict(case.texts))
     assert out["KI [ft-lb]"][0] == reference.floats("KI")[0]
@@ -215,7 +217,7 @@ def test_remarks_count_rows() -> None:
     _, _, solver = solve_columns(columns, "VAX")
     assert any(text.startswith("row 1 and 2 more: EM = 0: the moment") for text in solver.remarks())
     heavy = scene(2, MA=["1e6", "100"])
-    _, _, solver = solve_columns(heavy, "VAX", view=CHAPTER)
+    _, _, solver = solve_columns(heavy, "VAX", case=Case.of({}, view=CHAPTER))
     assert any("row 1: MA = 1e6: no vehicle has that mass" in text for text in solver.remarks())
     _, _, solver = solve_columns(heavy, "VAX")
     assert not any("MA" in text for text in solver.remarks())

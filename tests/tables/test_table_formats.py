@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import impact88
+from impact88.cases import Case, View
 from impact88.errors import UserError
 from impact88.mechanics.solve import solve
 from impact88.names import SCENE
@@ -186,7 +187,7 @@ def test_workbooks(tmp_path: Path) -> None:
     sheet.write_row(5, 1, [30.5, *[1.1] * 19])
     book.close()
     target = tmp_path / "out.xlsx"
-    outcome = solve_table(str(path), str(target), ["VAX"], view=impact88.cases.View("us"))
+    outcome = solve_table(str(path), str(target), ["VAX"], case=Case.of({}, view=View("us")))
     assert (outcome.rows, outcome.bad) == (2, 0)
     columns = columns_of(target)
     assert columns["UX [mph]"] == [25, 30.5]

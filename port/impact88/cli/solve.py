@@ -89,7 +89,6 @@ def _solve_table(args: Args, is_table: bool) -> int:
             names_of(args.results, RESULTS, "--results"),
             case=case,
             replaced=[*changes_of(args)] if is_table else (),
-            view=view,
             arithmetic=args.arithmetic or "float64",
             results_only=args.results_only,
             progress=update,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -93,8 +94,11 @@ def write_table(path: str, blocks: Iterable[Mapping[str, Column]], kind: str = "
         raise UserError(f"{kind} cannot be written to standard output; expected a file")
     if path == "-":
         sys.stdout.flush()
-        _WRITERS[kind](sys.stdout.buffer, blocks)
-        sys.stdout.buffer.flush()
+        output = io.BufferedWriter(sys.stdout.buffer)  # an unbuffered one may write a part only
+        try:
+            _WRITERS[kind](output, blocks)
+        finally:
+            output.detach()
         return
     with replacing(path, "wb") as file:
         _WRITERS[kind](file, blocks)

@@ -7,8 +7,6 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from typing import IO, Any
 
-import numpy as np
-
 from ..errors import UserError, library
 from ..files import decoding
 from .textformats import BLOCK_ROWS, Block, Column, Table, check_headings, heading_name
@@ -37,24 +35,29 @@ def read_parquet(path: str) -> Table:
         lazy = pl.scan_parquet(path, glob=False)
         names = lazy.collect_schema().names()
         rows = lazy.select(pl.len()).collect().item()
-    check_headings(names, path)
     _check_size(path, 8 * rows * len(names))
+    return _table_of(lazy, names, path, 1)
+
+
+def _table_of(lazy: Any, names: list[str], path: str, first: int) -> Table:
+    """Return a lazy frame as a table whose first row has a number: numbers as doubles, and all else
+    as texts."""
+    pl = polars()
+    numeric = pl.selectors.numeric()
+    texts = (~numeric).cast(pl.String, strict=False)
+    lazy = lazy.with_columns(numeric.cast(pl.Float64), texts)
 
     def blocks() -> Iterator[Block]:
-        for start in range(0, rows, BLOCK_ROWS):
-            with decoding(path, "is not a Parquet file"):
-                frame = lazy.slice(start, BLOCK_ROWS).collect()
-            columns = {name: _column(frame[name]) for name in names}
-            yield Block(columns, range(start + 1, start + 1 + frame.height))
+        number = first
+        while True:
+            with decoding(path, "cannot be decoded"):
+                frame = lazy.slice(number - first, BLOCK_ROWS).collect()
+            if not frame.height:
+                return
+            yield Block(dict(zip(names, frame, strict=True)), range(number, number + frame.height))
+            number += frame.height
 
-    return Table(names, blocks(), path)
-
-
-def _column(series: Any) -> Column:
-    """Return a series as an array if it holds numbers, else its texts."""
-    if series.dtype.is_numeric():
-        return series.cast(polars().Float64).to_numpy()
-    return series.cast(polars().String, strict=False).to_list()
+    return Table(check_headings(names, path), blocks(), path)
 
 
 def read_excel(path: str) -> Table:
@@ -63,7 +66,7 @@ def read_excel(path: str) -> Table:
 
     A column's cells are read as numbers, with all their bits, and what is left as text. Raises
     UserError."""
-    polars()
+    pl = polars()
     fastexcel = library("fastexcel", "tables", "an .xlsx")
 
     def load(kind: str, **options: Any) -> Any:
@@ -78,43 +81,33 @@ def read_excel(path: str) -> Table:
     counts = [sum(bool(heading_name(cell)[0]) for cell in row) for row in rows]
     if not any(counts):
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
-    count = counts.index(max(counts)) + 1
-    headings = rows[count - 1]
+    place = counts.index(max(counts))
+    headings = rows[place]
     while not headings[-1].strip():
         headings.pop()
     names = check_headings(headings, path)
-    options = {"skip_rows": count, "use_columns": [*range(len(names))], "column_names": names}
+    options = {"skip_rows": place + 1, "use_columns": [*range(len(names))], "column_names": names}
     numbers = load("float", dtype_coercion="coerce", **options)
     texts = load("string", dtype_coercion="coerce", **options)
-
-    def blocks() -> Iterator[Block]:
-        for start in range(0, texts.height, BLOCK_ROWS):
-            parts = numbers.slice(start, BLOCK_ROWS), texts.slice(start, BLOCK_ROWS)
-            columns = {name: _merge_cells(parts[0][name], parts[1][name]) for name in names}
-            first = count + 1 + start
-            yield Block(columns, range(first, first + parts[1].height))
-
-    return Table(names, blocks(), path)
+    frame = pl.DataFrame(map(_merge_cells, numbers, texts))
+    return _table_of(frame.lazy(), names, path, place + 2)
 
 
-def _merge_cells(numbers: Any, texts: Any) -> Column:
+def _merge_cells(numbers: Any, texts: Any) -> Any:
     """Return a sheet's column: numbers, or texts where a cell is one."""
     if numbers.null_count() == texts.null_count():
-        return numbers.fill_null(float("nan")).to_numpy()
-    pairs = zip(numbers.to_list(), texts.to_list(), strict=True)
-    return [text if number is None else repr(number) for number, text in pairs]
+        return numbers
+    return numbers.cast(polars().String).fill_null(texts)
 
 
 def frame_of(columns: Mapping[str, Column]) -> Any:
     """Return columns as a frame; a number that is none is null, and so is an empty text, which
     polars would put in quotes."""
-    series = []
-    for name, column in columns.items():
-        is_float = isinstance(column, np.ndarray) and column.dtype.kind == "f"
-        is_series = isinstance(column, polars().Series)
-        cells = column if is_float or is_series else [None if x == "" else x for x in column]
-        series.append(polars().Series(name, cells, strict=False, nan_to_null=is_float))
-    return polars().DataFrame(series)
+    selectors = polars().selectors
+    frame = polars().DataFrame(dict(columns), strict=False)
+    return frame.with_columns(
+        selectors.float().fill_nan(None), selectors.string().replace("", None)
+    )
 
 
 def write_parquet(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
@@ -134,4 +127,4 @@ def write_excel(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None
 
 def _concatenate(blocks: Iterable[Mapping[str, Column]]) -> Any:
     """Return blocks as one frame."""
-    return polars().concat([frame_of(columns) for columns in blocks], how="vertical_relaxed")
+    return polars().concat(map(frame_of, blocks), how="vertical_relaxed")

@@ -9,15 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..cases.amounts import MAX_LENGTH, Amount
 from ..cases.case import POINT_DEFAULTS, Case
-from ..cases.plausibility import Remark, implausible, impossible
-from ..cases.units import PLAIN, View, is_measured, system_using, unit_of
+from ..cases.plausibility import implausible, impossible
+from ..cases.units import View, is_measured, system_using, unit_of
 from ..decimals import is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..mechanics.solve import evaluate, solve
@@ -74,7 +74,6 @@ def solve_table(
     *,
     case: Case | None = None,
     replaced: Collection[str] = (),
-    view: View = PLAIN,
     arithmetic: str = "float64",
     results_only: bool = False,
     source_format: str = "",
@@ -92,11 +91,9 @@ def solve_table(
     results : sequence of str, optional
         Names of the results, all by default.
     case : Case, optional
-        Values for the columns that the table lacks.
+        Values for the columns that the table lacks; its view is that of columns that name no units.
     replaced : collection of str, optional
         Names whose values in ``case`` take the place of the table's columns.
-    view : View, optional
-        Units, axes and headings of columns that name none.
     arithmetic : {"float64", "applesoft"}, default "float64"
         Double precision, or the 1988 program's with two more columns, ERROR and LINE.
     results_only : bool, default False
@@ -119,7 +116,7 @@ def solve_table(
     kind = format_of(target, target_format)
     if isinstance(source, str):
         source = read_table(source, source_format, arithmetic == "applesoft")
-    solver = Solver(source, results, case, replaced, view, arithmetic, kind == "csv", results_only)
+    solver = Solver(source, results, case, replaced, arithmetic, kind == "csv", results_only)
     solved = solver.solved
     extent, position = source.extent
 
@@ -143,7 +140,7 @@ class Solver:
     ----------
     table : Table
         The table.
-    results, case, replaced, view, arithmetic, results_only
+    results, case, replaced, arithmetic, results_only
         As for `solve_table`.
     as_text : bool
         Keep the scene's columns as they are in the file; else as numbers.
@@ -160,7 +157,6 @@ class Solver:
         results: Sequence[str] = (),
         case: Case | None = None,
         replaced: Collection[str] = (),
-        view: View = PLAIN,
         arithmetic: str = "float64",
         as_text: bool = True,
         results_only: bool = False,
@@ -169,34 +165,35 @@ class Solver:
         self.is_applesoft = arithmetic == "applesoft"
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         check_names(results, allowed, f"result of --arithmetic {arithmetic}", "--results")
-        case = case or Case.of({}, view=view)
+        case = case or Case.of({})
         try:
             headings, self.view = read_headings(table.names, case.view)
         except UserError as error:
             raise UserError(str(error), table.where) from None
-        if self.view != case.view:
-            case = Case.of(case.written, case.source, self.view, case.places, is_inferred=True)
-        self.case = case
+        is_inferred = self.view != case.view
+        self.case = case = Case.of(case.written, case.source, self.view, case.places, is_inferred)
+        scene = {name: column for name, column in headings.items() if name in SCENE}
+        self.names = {heading: name for name, (heading, _) in scene.items()}
+        self.kept = [h for h in table.names if not (results_only and h in self.names)]
+        self.maps = {name: self.view.map(name, unit) for name, (_, unit) in scene.items()}
         self.replaced = {*replaced} & {*case.entries}
-        self.columns = {n: h for n, h in headings.items() if n in SCENE and n not in self.replaced}
-        names = {heading: heading_name(heading)[0] for heading in table.names}
-        self.kept = {h: name for h, name in names.items() if name not in SCENE or not results_only}
-        self.constants = {n: x for n, x in case.numbers.items() if n not in self.columns}
-        self.derived = {*case.derived} - {*self.columns}  # each row has its own
-        self._counts: dict[str, tuple[int, int, str]] = {}
-        self._choose_results(tuple(results) or allowed)
+        self.columns = {n: column for n, column in scene.items() if n not in self.replaced}
+        derived = {*case.derived} - {*self.columns}  # each row has its own
+        known = {*self.columns, *derived}
+        self.constants = {n: x for n, x in case.numbers.items() if n not in known}
+        self._remarked: dict[str, tuple[int, int, str]] = {}
+        self._choose_results(tuple(results) or allowed, known | {*self.constants})
 
-    def _choose_results(self, results: Sequence[str]) -> None:
+    def _choose_results(self, results: Sequence[str], known: Collection[str]) -> None:
         """Set the results, without those of point masses whose inputs the table lacks. Raises
         UserError where it lacks another column."""
-        present = {*self.columns, *self.constants, *self.derived}
-        self.lacking = [name for name in SCENE if name not in present]
+        self.lacking = [name for name in SCENE if name not in known]
         may_be_points = "M" in self.columns or self.constants.get("M") == 4
         absent = [n for n in self.lacking if not may_be_points or n not in POINT_DEFAULTS]
         if absent:
             message = f"no column {' '.join(absent)}; --set NAME=VALUE gives one for all rows"
             raise UserError(message, self.table.where)
-        scene = {"WA": 0.0, "WB": 0.0, **dict.fromkeys(present, 1.0), "M": 4.0}
+        scene = {"WA": 0.0, "WB": 0.0, **dict.fromkeys(known, 1.0), "M": 4.0}
         self.left_out = {} if self.is_applesoft else evaluate(scene, results)[1]
         self.results = [name for name in results if name not in self.left_out]
         if not self.results:
@@ -205,166 +202,163 @@ class Solver:
     def remarks(self) -> list[str]:
         """Return the remarks on all rows so far."""
         lines = [f"{name} needs {' '.join(names)}" for name, names in self.left_out.items()]
-        for row, count, text in self._counts.values():
+        for row, count, text in self._remarked.values():
             tail = f" and {count - 1:,} more" if count > 1 else ""
             lines.append(f"{self.table.counts} {row:,}{tail}: {text}")
         return lines
 
     def solve(self, block: Block) -> dict[str, Column]:
         """Return a block with its results."""
-        rows = _Rows(self, block)
-        results = rows.replay() if self.is_applesoft else rows.solve()
-        for name, where, words in rows.implausible():
-            self._count(rows, name, where, words)
+        rows = self._read(block)
+        results = self._replay(rows) if self.is_applesoft else self._solve(rows)
+        self._remark(rows)
         bad = sorted(rows.bad)
         for name, values in results.items():
             values[bad] = _EMPTY.get(name, math.nan)
-        self.solved.rows += rows.count
+        self.solved.rows += len(block.rows)
         self.solved.bad += len(bad)
         self.solved.listed += [rows.bad[at] for at in bad[: MAX_LISTED - len(self.solved.listed)]]
         if self.is_applesoft:
-            errors = results["ERROR"]
-            self.solved.ended += int(np.sum((errors != "") & (errors != ZERO_DETERMINANT)))
-        columns = {heading: rows.output_column(heading) for heading in self.kept}
+            self.solved.ended += int(np.sum(~np.isin(results["ERROR"], ["", ZERO_DETERMINANT])))
+        columns = {heading: self._output_column(rows, heading) for heading in self.kept}
         for name, values in results.items():
             is_result = name in RESULTS
             heading = self.view.heading(name) if is_result else name
             columns[heading] = self.view.shown(name, values) if is_result else values
         return columns
 
-    def _count(self, rows: _Rows, name: str, where: Any, words: str) -> None:
-        """Count the rows that a remark applies to."""
-        places = np.flatnonzero(np.broadcast_to(where, rows.count))
-        if places.size and name in self.columns:
-            cell = rows.cells(name)[int(places[0])]
-            first = rows.block.rows[places[0]], 0, f"{name} = {cell}: {words}"
-            row, count, text = self._counts.get(name, first)
-            self._counts[name] = row, count + places.size, text
-
-
-class _Rows:
-    """The rows of one block.
-
-    ``values``: the scene's columns in base units; ``cases``: the rows that are read as cases;
-    ``bad``: the reasons of the rows that cannot be used; both by place in the block."""
-
-    def __init__(self, solver: Solver, block: Block) -> None:
-        self.solver, self.block, self.count = solver, block, len(block.rows)
-        self.bad: dict[int, str] = {}
-        self.cases: dict[int, Case] = {}
-        self.shown = {n: plain_numbers(self.cells(n)) for n in solver.columns}
-        constants = {**dict.fromkeys(SCENE, math.nan), **solver.constants}
-        self.values = {name: np.full(self.count, value) for name, value in constants.items()}
-        is_other = np.full(self.count, bool(solver.derived))
-        for name, shown in self.shown.items():
-            factor, offset = self.map(name)
-            self.values[name] = offset + factor * shown
-            is_other |= ~np.isfinite(shown)
-            if solver.is_applesoft:
-                is_other |= np.array(
-                    [len(str(cell)) > MAX_LENGTH for cell in self.cells(name)], bool
-                )
-        for name in solver.lacking:
-            default = float(POINT_DEFAULTS[name])
-            self.values[name] = np.where(self.values["M"] == 4, default, math.nan)
-            is_other |= np.isnan(self.values[name])
+    def _read(self, block: Block) -> _Rows:
+        """Return the rows of a block: as columns of numbers, and as cases where a row has anything
+        else."""
+        count = len(block.rows)
+        shown = {n: plain_numbers(block.columns[h]) for n, (h, _) in self.columns.items()}
+        values = {n: np.full(count, self.constants.get(n, math.nan)) for n in SCENE}
+        for name, numbers in shown.items():
+            factor, offset = map(float, self.maps[name])
+            values[name] = offset + factor * numbers
+        for name in self.lacking:
+            values[name][values["M"] == 4] = POINT_DEFAULTS[name]
+        is_other = np.zeros(count, bool)
+        for name in SCENE:
+            if name not in self.constants:
+                is_other |= ~np.isfinite(values[name])
+        if self.is_applesoft:
+            for heading, _ in self.columns.values():
+                lengths = [len(str(cell)) for cell in block.columns[heading]]
+                is_other |= np.array(lengths, int) > MAX_LENGTH
+        rows = _Rows(block, shown, values, {}, {})
         for at in np.flatnonzero(is_other).tolist():
             try:
-                self._read_row(at)
+                rows.cases[at] = case = self._read_row(block, at)
             except UserError as error:
-                self.bad[at] = str(error)
+                rows.bad[at] = str(error)
+                continue
+            defaults = {name: float(case.texts[name]) for name in case.omitted}
+            for name, value in {**defaults, **case.numbers}.items():
+                values[name][at] = value
+        return rows
 
-    def cells(self, name: str) -> Column:
-        """Return the cells of a column."""
-        return self.block.columns[self.solver.columns[name][0]]
-
-    def map(self, name: str) -> tuple[float, float]:
-        """Return factor and offset from a column's cells to base units."""
-        factor, offset = self.solver.view.map(name, self.solver.columns[name][1])
-        return float(factor), float(offset)
-
-    def place(self, at: int) -> str:
-        """Return the place of a row for messages."""
-        table = self.solver.table
-        return f"{table.where}, {table.counts} {self.block.rows[at]:,}"
-
-    def _read_row(self, at: int) -> None:
-        """Read a row as a case. Raises UserError."""
-        solver, where = self.solver, self.place(at)
-        cells = {n: _entry(self.cells(n)[at], unit) for n, (_, unit) in solver.columns.items()}
-        case = Case.of({**solver.case.written, **cells}, where, solver.view)
-        if case.view != solver.view:
+    def _read_row(self, block: Block, at: int) -> Case:
+        """Return a row as a case. Raises UserError."""
+        where = self._place(block, at)
+        columns = self.columns.items()
+        cells = {name: _entry(block.columns[h][at], unit) for name, (h, unit) in columns}
+        case = Case.of({**self.case.written, **cells}, where, self.view)
+        if case.view != self.view:
             raise UserError("has units; expected them in the headings, or --units", where)
-        ranges = {*case.ranges} & {*cells}
+        lacks: Mapping[str, Sequence[str]] = {}
+        if case.omitted and not self.is_applesoft:
+            scene = {**dict.fromkeys(("WA", "WB"), 0.0), **case.numbers}
+            lacks = evaluate(scene, self.results)[1]
+        absent = {name for names in lacks.values() for name in names}
         for name in SCENE:
-            if name not in case.texts:
+            if name not in case.texts or name in absent:
                 raise UserError(f"{name} is empty; expected a number", where)
-            if name in ranges:
+            if name in case.ranges and name in cells:
                 raise UserError(f"{name} = {quoted(cells[name])}: expected one number", where)
-            if solver.is_applesoft and case.texts[name] == "INF":
+            if self.is_applesoft and case.texts[name] == "INF":
                 raise UserError(f"{name} = inf cannot be typed; expected a number", where)
-        self.cases[at] = case
-        for name, value in {**dict.fromkeys(case.omitted, 1.0), **case.numbers}.items():
-            self.values[name][at] = value
+        return case
 
-    def solve(self) -> dict[str, NDArray[Any]]:
+    def _place(self, block: Block, at: int) -> str:
+        """Return the place of a row for messages."""
+        return f"{self.table.where}, {self.table.counts} {block.rows[at]:,}"
+
+    def _solve(self, rows: _Rows) -> dict[str, NDArray[Any]]:
         """Return the results in double precision."""
-        for name, mask, words in impossible(self.values):
-            for at in np.flatnonzero(np.broadcast_to(mask, self.count)).tolist():
-                digits = to_text(float(self.values[name][at]))
-                self.bad.setdefault(at, f"{self.place(at)}: {name} = {digits} {words}")
-        solution = solve(self.values, self.solver.results)
-        return {name: np.array(np.broadcast_to(x, self.count)) for name, x in solution.items()}
+        for name, mask, words in impossible(rows.values):
+            for at in np.flatnonzero(mask).tolist():
+                digits = to_text(float(rows.values[name][at]))
+                place = self._place(rows.block, at)
+                rows.bad.setdefault(at, f"{place}: {name} = {digits} {words}")
+        return solve(rows.values, self.results)
 
-    def replay(self) -> dict[str, NDArray[Any]]:
+    def _replay(self, rows: _Rows) -> dict[str, NDArray[Any]]:
         """Return the results of the 1988 arithmetic."""
         from ..program.replay import replay
 
-        outcome = replay({name: self._texts(name) or ["6"] for name in SCENE})
-        results = {name: outcome.floats(name) for name in self.solver.results}
+        count = len(rows.block.rows)
+        outcome = replay({name: self._texts(rows, name) or ["6"] for name in SCENE})
+        results = {name: outcome.floats(name) for name in self.results}
         results["ERROR"] = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
         results["LINE"] = np.array(outcome.line)
-        return {name: values[: self.count] for name, values in results.items()}
+        return {name: values[:count] for name, values in results.items()}
 
-    def _texts(self, name: str) -> list[str]:
+    def _texts(self, rows: _Rows, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
-        solver = self.solver
-        if name in solver.columns:
-            cells = [_entry(cell, "").upper() for cell in self.cells(name)]
-            texts = [text if is_number(text) else "0" for text in cells]  # others are cases
-            factor, offset = solver.view.map(name, solver.columns[name][1])
+        if name in self.columns:
+            cells = rows.block.columns[self.columns[name][0]]
+            texts = [_entry(cell, "").upper() for cell in cells]
+            for at in (*rows.cases, *rows.bad):
+                texts[at] = "6"
+            factor, offset = self.maps[name]
             if factor != 1 or offset:
                 exact = (Amount.exactly(to_double(text), text) for text in texts)
                 texts = [amount.mapped(factor, offset).typed for amount in exact]
         else:
-            texts = [solver.case.texts.get(name) or POINT_DEFAULTS.get(name, "")] * self.count
-        for at, case in self.cases.items():
+            constant = self.case.texts.get(name) or POINT_DEFAULTS.get(name, "6")
+            texts = [constant] * len(rows.block.rows)
+        for at, case in rows.cases.items():
             texts[at] = case.texts[name]
-        for at in self.bad:
-            texts[at] = "6"
         return texts
 
     @np.errstate(all="ignore")
-    def implausible(self) -> list[Remark]:
-        """Return the remarks on implausible values."""
-        courses = {}
-        for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
-            angle = np.degrees(np.arctan2(self.values[y], self.values[x]))
-            rests = (self.values[x] == 0) & (self.values[y] == 0)
-            courses[vehicle] = np.where(rests, math.nan, angle)
-        return list(implausible(self.values, self.solver.view, courses))
+    def _remark(self, rows: _Rows) -> None:
+        """Count the rows with implausible values."""
+        courses, _ = evaluate(rows.values, ["HA", "HB"])
+        by_vehicle = {name[1]: angles for name, angles in courses.items()}
+        for name, where, words in implausible(rows.values, self.view, by_vehicle):
+            places = np.flatnonzero(where)
+            if places.size and name in self.columns:
+                cell = rows.block.columns[self.columns[name][0]][int(places[0])]
+                first = rows.block.rows[places[0]], 0, f"{name} = {cell}: {words}"
+                row, count, text = self._remarked.get(name, first)
+                self._remarked[name] = row, count + places.size, text
 
-    def output_column(self, heading: str) -> Column:
+    def _output_column(self, rows: _Rows, heading: str) -> Column:
         """Return a column of the table for the output."""
-        solver, name = self.solver, self.solver.kept[heading]
-        if name in solver.replaced:
-            return solver.view.shown(name, self.values[name])
-        if name not in self.shown or solver.as_text:
-            return self.block.columns.get(heading, [None] * self.count)
-        column, rows = self.shown[name].copy(), [*self.cases]
-        factor, offset = self.map(name)
-        column[rows] = (self.values[name][rows] - offset) / factor
-        return column
+        name = self.names.get(heading, "")
+        if not name or (self.as_text and name not in self.replaced):
+            return rows.block.columns[heading]
+        factor, offset = map(float, self.maps[name])
+        numbers = (rows.values[name] - offset) / factor + 0.0  # no -0
+        numbers[[at for at, case in rows.cases.items() if name in case.omitted]] = math.nan
+        cells = rows.shown.get(name, numbers)
+        return np.where(np.isfinite(cells), cells, numbers)
+
+
+class _Rows(NamedTuple):
+    """The rows of one block.
+
+    ``shown``: the columns of the scene as in the file, ``values``: in base units along the
+    listing's axes, NaN where a row has something else; ``cases``: the rows read as cases; ``bad``:
+    the reasons of the rows that cannot be used; both by place in the block."""
+
+    block: Block
+    shown: dict[str, Floats]
+    values: dict[str, Floats]
+    cases: dict[int, Case]
+    bad: dict[int, str]
 
 
 def _entry(cell: Any, unit: str) -> str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from itertools import islice, product
+from collections.abc import Mapping
+from itertools import product
 from math import isfinite, prod
 
 import numpy as np
@@ -12,7 +12,7 @@ from ..cases.case import Case
 from ..decimals import to_text
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
-from .textformats import BLOCK_ROWS, Block, Table
+from .textformats import Table, blocks_of
 
 MAX_SCENES = 10_000_000  # of one sweep; time and memory grow with them
 
@@ -43,13 +43,7 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
     if prod(map(len, values.values())) > MAX_SCENES:
         raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
     rows = enumerate(product(*values.values()), 1)
-
-    def blocks() -> Iterator[Block]:
-        while block := list(islice(rows, BLOCK_ROWS)):
-            columns = zip(values, zip(*(row for _, row in block), strict=True), strict=True)
-            yield Block({n: list(c) for n, c in columns}, [number for number, _ in block])
-
-    return Table([*values], blocks(), case.source)
+    return Table([*values], blocks_of([*values], rows), case.source)
 
 
 def _values(case: Case, name: str, text: str) -> list[str]:

@@ -9,13 +9,13 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from importlib.util import find_spec
-from itertools import chain, count, islice
+from itertools import chain, islice
 from typing import IO, Any, NamedTuple
 
 import numpy as np
@@ -80,6 +80,14 @@ def heading_name(heading: str) -> tuple[str, str]:
     return name, "" if match[2] in (None, "1", "-", "bits") else match[2]
 
 
+def blocks_of(names: Sequence[str], rows: Iterator[tuple[int, Sequence[Any]]]) -> Iterator[Block]:
+    """Yield rows, each with its number, as blocks."""
+    while some := list(islice(rows, BLOCK_ROWS)):
+        numbers, cells = zip(*some, strict=True)
+        columns = map(list, zip(*cells, strict=True))
+        yield Block(dict(zip(names, columns, strict=True)), numbers)
+
+
 # -- CSV
 
 
@@ -88,108 +96,88 @@ def read_csv(path: str) -> Table:
     semicolons or tabs, and numbers among semicolons have a decimal comma. Raises UserError."""
     where, source = display_name(path), Source(path)
     file = io.BufferedReader(source)
-    line = file.readline(LONGEST_LINE)
-    check_text(line, where, "CSV")
-    head = _decode(line, where, 1).removeprefix("\ufeff")
-    delimiter = max(",;\t", key=head.count)
+    head = file.readline(LONGEST_LINE)
+    check_text(head, where, "CSV")
+    (head_text,) = _decode([head], where, 1)
+    delimiter = max(",;\t", key=head_text.count)
     csv.field_size_limit(LONGEST_LINE)
-    try:
-        fields = next(csv.reader([head], delimiter=delimiter, strict=True), [])
-    except csv.Error as error:
-        raise UserError(f"is not CSV: {error}", where) from None
+    _, fields = next(_csv_rows([head_text.removeprefix("\ufeff")], delimiter, where, 1), (1, []))
     names = check_headings(fields, where)
 
     def blocks() -> Iterator[Block]:
-        number = 2
-        for chunk in _chunks(file, where):
-            block = _split_plain(chunk, names, delimiter, number) if find_spec("polars") else None
-            block = block or _split(chunk, names, delimiter, number, where)
-            if block.rows:
-                yield _with_points(block) if delimiter == ";" else block
-            number += _count(chunk, b"\n")
+        number, chunk = 2, b""
+        while find_spec("polars"):
+            chunk = file.read(CHUNK_BYTES) + file.readline(LONGEST_LINE)
+            block = _split_plain(chunk, names, delimiter, number)
+            if block is None:
+                break
+            yield block
+            number += len(block.rows)
+        rest = chain(io.BytesIO(chunk), iter(partial(file.readline, LONGEST_LINE), b""))
+        lines = _decode(rest, where, number)
+        yield from blocks_of(names, _csv_rows(lines, delimiter, where, number, len(names)))
 
-    return Table(names, blocks(), where, "line", source.extent)
-
-
-def _chunks(file: IO[bytes], where: str) -> Iterator[bytes]:
-    """Yield the bytes of a CSV file in chunks of whole lines that end outside quotes."""
-    chunk = b""
-    while data := file.read(CHUNK_BYTES):
-        chunk += data + file.readline(LONGEST_LINE)
-        if chunk.count(b'"') % 2 == 0:
-            yield chunk if chunk.endswith(b"\n") else chunk + b"\n"
-            chunk = b""
-        elif len(chunk) > 4 * CHUNK_BYTES:
-            raise UserError("has a quoted text that does not end; expected CSV", where)
-    if chunk:
-        yield chunk
+    read = map(_with_points, blocks()) if delimiter == ";" else blocks()
+    return Table(names, read, where, "line", source.extent)
 
 
-def _count(chunk: bytes, character: bytes) -> int:
-    """Return how often a character is in a chunk; faster than ``count`` for frequent ones."""
-    return int(np.count_nonzero(np.frombuffer(chunk, np.uint8) == ord(character)))
-
-
-def _decode(chunk: bytes, where: str, line: int) -> str:
-    """Return the text of bytes that begin in a line. Raises UserError."""
-    try:
-        return chunk.decode()
-    except UnicodeDecodeError as error:
-        place = f"{where}, line {line + chunk.count(bytes([10]), 0, error.start)}"
-        raise UserError("is not UTF-8 text; expected a file saved as CSV UTF-8", place) from None
+def _decode(lines: Iterable[bytes], where: str, first: int) -> Iterator[str]:
+    """Yield the texts of lines, the first of which has a number. Raises UserError."""
+    for number, line in enumerate(lines, first):
+        try:
+            yield line.decode()
+        except UnicodeDecodeError:
+            fault = "is not UTF-8 text; expected a file saved as CSV UTF-8"
+            raise UserError(fault, f"{where}, line {number}") from None
 
 
 def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) -> Block | None:
-    """Return the block of a chunk by polars; None where it has quotes, blank rows, or rows of
-    another width, which polars fills without a word."""
+    """Return the block of a chunk by polars; None at the end of the file, and where it has quotes,
+    blank rows, or rows of another width, which polars fills without a word."""
     import polars
 
-    rows, marks = _count(chunk, b"\n"), _count(chunk, delimiter.encode())
-    if b'"' in chunk or marks != rows * (len(names) - 1):
+    marks = np.count_nonzero(np.frombuffer(chunk, np.uint8) == ord(delimiter))
+    rows = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
+    if not chunk or b'"' in chunk or marks != rows * (len(names) - 1):
         return None
     options: dict[str, Any] = {"has_header": False, "infer_schema": False, "quote_char": None}
     with suppress(polars.exceptions.PolarsError):  # rows of more and of fewer fields; not UTF-8
-        frame = polars.read_csv(chunk, **options, separator=delimiter)
-        columns = dict(zip(names, frame.get_columns(), strict=False))
-        has_gaps = all(column.null_count() for column in columns.values())
-        if frame.shape == (rows, len(names)) and not has_gaps:
-            return Block(columns, range(line, line + rows))
+        frame = polars.read_csv(chunk, **options, separator=delimiter, new_columns=names)
+        is_blank = polars.all_horizontal(polars.all().is_null())
+        if frame.shape == (rows, len(names)) and not frame.select(is_blank.any()).item():
+            return Block(frame.to_dict(), range(line, line + rows))
     return None
 
 
-def _split(chunk: bytes, names: Sequence[str], delimiter: str, line: int, where: str) -> Block:
-    """Return the block of a chunk by the csv module. Raises UserError for a row of another
-    width."""
-    text = io.StringIO(_decode(chunk, where, line), newline="")
-    reader = csv.reader(text, delimiter=delimiter, strict=True)
-    rows, numbers, number = [], [], line
+def _csv_rows(
+    lines: Iterable[str], delimiter: str, where: str, number: int, width: int = 0
+) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows of CSV that are not blank, with their lines, by the csv module. Raises
+    UserError for a row of another width."""
+    reader = csv.reader(lines, delimiter=delimiter, strict=True)
+    line = number
     try:
         for row in reader:
-            if len(row) not in (0, len(names)):
-                fault = f"has {len(row)} fields; expected {len(names)}, as in the headings"
-                raise UserError(fault, f"{where}, line {number}")
+            if width and len(row) not in (0, width):
+                fault = f"has {len(row)} fields; expected {width}, as in the headings"
+                raise UserError(fault, f"{where}, line {line}")
             if any(row):
-                rows.append(row)
-                numbers.append(number)
-            number = line + reader.line_num
+                yield line, row
+            line = number + reader.line_num
     except csv.Error as error:
         raise UserError(f"is not CSV: {error}", where) from None
-    columns = zip(*rows, strict=True) if rows else [()] * len(names)
-    return Block({n: list(column) for n, column in zip(names, columns, strict=True)}, numbers)
 
 
 def _with_points(block: Block) -> Block:
     """Return a block whose quantities have decimal points in place of decimal commas."""
-    columns = {
-        heading: [
-            cell.replace(".", "").replace(",", ".") if cell and "," in cell else cell
-            for cell in column
-        ]
-        if heading_name(heading)[0]
-        else column
-        for heading, column in block.columns.items()
-    }
-    return block._replace(columns=columns)
+    columns = dict(block.columns)
+    for heading, column in columns.items():
+        if heading_name(heading)[0]:
+            cells = (cell or "" for cell in column)
+            columns[heading] = [
+                cell.replace(".", "").replace(",", ".") if "," in cell else cell for cell in cells
+            ]
+    return Block(columns, block.rows)
 
 
 # -- JSON Lines
@@ -199,29 +187,21 @@ def read_json(path: str, digits: bool = False) -> Table:
     """Return the table in a file of JSON Lines, one object for each row. ``digits``: keep those of
     numbers, as texts. Raises UserError."""
     where, source = display_name(path), Source(path)
-    rows = _json_rows(io.BufferedReader(source), where, str if digits else None)
-    first = next(rows, (1, {}))
-    names = check_headings(list(first[1]), where)
-
-    def blocks() -> Iterator[Block]:
-        remaining = chain([first], rows)
-        while block := list(islice(remaining, BLOCK_ROWS)):
-            columns = {name: [row.get(name) for _, row in block] for name in names}
-            yield Block(columns, [number for number, _ in block])
-
-    return Table(names, blocks(), where, "line", source.extent)
+    objects = _json_objects(io.BufferedReader(source), where, str if digits else None)
+    first = next(objects, (1, {}))
+    keys = list(first[1])
+    rows = ((line, [row.get(key) for key in keys]) for line, row in chain([first], objects))
+    names = check_headings(keys, where)
+    return Table(names, blocks_of(names, rows), where, "line", source.extent)
 
 
-def _json_rows(
+def _json_objects(
     file: IO[bytes], where: str, numeral: type[str] | None
 ) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the objects of a file with their lines. Raises UserError for a line that is no flat
     object, or has a name that the first has not."""
     names: set[str] = set()
-    for number in count(1):
-        line = file.readline(LONGEST_LINE)
-        if not line:
-            return
+    for number, line in enumerate(iter(partial(file.readline, LONGEST_LINE), b""), 1):
         if not line.strip():
             continue
         try:
@@ -243,34 +223,32 @@ def _json_rows(
 
 def write_csv(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
     """Write blocks as CSV; a number that is none is an empty field."""
-    is_first = True
-    for columns in blocks:
+    for number, columns in enumerate(blocks):
         if find_spec("polars"):
             from .polarsformats import frame_of
 
             data = io.BytesIO()  # polars hides which error of the file it met
-            frame_of(columns).write_csv(data, include_header=is_first)
+            frame_of(columns).write_csv(data, include_header=not number)
             file.write(data.getbuffer())
         else:
             text = io.StringIO(newline="")
             writer = csv.writer(text, lineterminator="\n")
-            writer.writerows([columns.keys()] if is_first else [])
-            writer.writerows(zip(*map(_cells, columns.values()), strict=True))
+            writer.writerows([[*columns], *_rows(columns)][bool(number) :])
             file.write(text.getvalue().encode())
-        is_first = False
 
 
 def write_json(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
     """Write blocks as JSON Lines; a number that is none is null."""
     for columns in blocks:
-        names = list(columns)
-        rows = zip(*map(_cells, columns.values()), strict=True)
-        lines = [json.dumps(dict(zip(names, row, strict=True)), ensure_ascii=False) for row in rows]
-        file.write("".join(f"{line}\n" for line in lines).replace("Infinity", "1e999").encode())
+        rows = (dict(zip(columns, row, strict=True)) for row in _rows(columns))
+        text = "".join(f"{json.dumps(row, ensure_ascii=False)}\n" for row in rows)
+        file.write(text.replace("Infinity", "1e999").encode())
 
 
-def _cells(column: Column) -> list[Any]:
-    """Return a column as a list, None for a number that is none."""
-    if isinstance(column, np.ndarray) and column.dtype.kind == "f":
-        return [None if math.isnan(x) else x for x in column.tolist()]
-    return column.tolist() if isinstance(column, np.ndarray) else list(column)
+def _rows(columns: Mapping[str, Column]) -> Iterator[tuple[Any, ...]]:
+    """Return the rows of columns, None for a number that is none."""
+    lists = []
+    for column in columns.values():
+        cells = column.tolist() if isinstance(column, np.ndarray) else column
+        lists.append([None if cell != cell else cell for cell in cells])
+    return zip(*lists, strict=True)
