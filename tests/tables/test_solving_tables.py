@@ -258,3 +258,26 @@ def test_bad_rows_are_listed_and_counted(tmp_path: Path) -> None:
     assert lines[-1] == "30 rows could not be used, these first"
     with (tmp_path / "out.csv").open() as file:
         assert [row["VAX"] == "" for row in csv.DictReader(file)] == [False, True] * 30
+
+
+def test_point_masses_are_not_given_coefficients() -> None:
+    for name in ("E", "MU", "GA"):
+        columns = {**scene(2, M=["4", "4"], UY=["1", "1"]), name: [SAMPLE[name], ""]}
+        out, bad, _ = solve_columns(columns, "KI VAX")
+        assert bad == [f"table, row 2: {name} is empty; expected a number"]
+        assert np.isnan(out["VAX"]).tolist() == [False, True]
+    out, bad, _ = solve_columns(scene(M=["4"], WA=[""]), "WAF")
+    assert (out["WAF"].tolist(), bad) == ([0.0], [])
+
+
+def test_constants_are_shown_in_the_unit_of_their_heading() -> None:
+    case = Case.of({"UX": "10 m/s", "units": "si"})
+    columns = {"UX [km/h]" if n == "UX" else n: c for n, c in scene().items()}
+    out, _, _ = solve_columns(columns, "VAX", case=case, replaced=["UX"])
+    assert out["UX [km/h]"].tolist() == [36]
+
+
+def test_numbers_beyond_doubles_cannot_be_converted() -> None:
+    columns = scene(2, UX=["1", "1e999"])
+    _, bad, _ = solve_columns(columns, "VAX", case=Case.of({"units": "us"}), arithmetic="applesoft")
+    assert [text[:17] for text in bad] == ["table, row 2: UX "]
