@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -128,14 +127,6 @@ def test_an_impact_that_gains_energy_is_adverse(restitution: float, status: int)
     outcome = command("solve", *(word for entry in entries for word in ("--set", entry)))
     assert outcome.status == status
     assert ("kinetic energy is gained" in outcome.out) == bool(status)
-
-
-def test_values_of_a_scene_replace_those_of_a_copy(folder: Path) -> None:
-    listing = files("impact88.legacy").joinpath("impact.bas").read_text("utf-8")
-    (folder / "copy.bas").write_text(listing.replace("N = 6:M = 6", "N = 6:M = 4"), "utf-8")
-    outcome = command("run", "--sample", "1", "--listing", "copy.bas", folder=folder)
-    assert outcome.out == impact88.run(impact88.sample(1)).page
-    assert "M = 6 among them, replace those in the copy" in outcome.err
 
 
 @pytest.mark.parametrize(("number", "names"), [(1, ""), (2, "IA IB PA PB TA TB EM")])

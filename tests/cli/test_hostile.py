@@ -44,7 +44,7 @@ run --sample 1 --set XX=1
 run --sample 1 --set MU=1 --set MU=2
 run --sample 1 --set MU=1e999
 run --json
-run --sample 1 --listing text.bas
+verify page.html --listing text.bas
 run --sample 1 -o .
 run --sample 1 -o missing/folder/page.txt
 solve

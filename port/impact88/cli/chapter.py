@@ -77,9 +77,10 @@ def _collision_tables(args: options.Args) -> int:
         "comparison": cells,
         "validation": [check._asdict() for check in validation.checks()],
     }
-    lines: Iterable[str] = words.comparison_lines()
-    if args.table or args.validation:
-        lines = words.table_lines(int(args.table)) if args.table else words.validation_lines()
+    if args.table:
+        lines: Iterable[str] = words.table_lines(int(args.table))
+    else:
+        lines = words.validation_lines() if args.validation else words.comparison_lines()
     show(args.json, "chapter", record, lines)
     return int(any(cell.explanation == "not explained" for cell in cells))
 

@@ -3,7 +3,6 @@ impact88 run crash.toml --set MU=.5            a scene file, one value changed
 impact88 run                                   the listing's data; it asks for the velocities
 impact88 run crash.toml --arithmetic float64   in double precision
 impact88 run --sample 1 --json                 every variable with its five stored bytes
-impact88 run --sample 1 --listing office.bas   another copy of the listing
 
 Runs the 1988 program and prints what an Apple II Plus prints. Without a scene it asks at the
 terminal, or reads two lines of three numbers from standard input.
@@ -20,13 +19,12 @@ from ..files import typed_line
 from ..names import SCENE, VELOCITIES
 from ..program.run import Run, page, run, start
 from ..program.scene import Scene, published_data, sample
-from .options import CASE, JSON, OUTPUT, Args, case_of, choice, input_file
+from .options import CASE, JSON, OUTPUT, Args, case_of, choice
 from .output import say, show
 
 OPTIONS = (
     *CASE,
     choice("--arithmetic", ("applesoft", "float64"), "the numbers to compute with"),
-    input_file("--listing", "FILE.bas", "run another copy of the listing, in the emulator"),
     JSON,
     OUTPUT,
 )
@@ -35,11 +33,8 @@ OPTIONS = (
 def main(args: Args) -> int:
     """Run the program."""
     arithmetic = args.arithmetic or "applesoft"
-    if args.file or args.sample or args.set or args.json or args.listing:
-        scene = _scene(args)
-        record = (
-            _run_copy(args.listing, scene, arithmetic) if args.listing else run(scene, arithmetic)
-        )
+    if args.file or args.sample or args.set or args.json:
+        record = run(_scene(args), arithmetic)
         if args.json:
             show(True, "run", {**record._asdict(), "floats": record.floats}, ())
         else:
@@ -66,18 +61,6 @@ def _scene(args: Args) -> Scene:
         names = [n if case.texts[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
         note("run", f"0 is typed for what is not given: {' '.join(names)}")
     return Scene(case.texts, None, case.source)
-
-
-def _run_copy(path: str, scene: Scene, arithmetic: str) -> Run:
-    """Run a copy of the listing on a scene, in the emulator."""
-    from ..program.copies import ListingCopy
-
-    if arithmetic != "applesoft":
-        raise UserError("--listing runs in the emulator; expected --arithmetic applesoft")
-    copy = ListingCopy(path)
-    scene.check_typed()
-    note("run", f"the scene's values, M = {scene['M']} among them, replace those in the copy")
-    return copy.run(scene)
 
 
 def _ask(arithmetic: str) -> Run:

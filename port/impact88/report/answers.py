@@ -9,7 +9,10 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from heapq import nlargest
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from .. import status
 from ..cases.case import Case
@@ -50,6 +53,10 @@ UNUSABLE = (
 )
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
+_ERROR = math.sqrt(0.05 * 0.95 / DRAWS)  # standard error of the draws below a 5 % quantile
+MONTE_CARLO = f"intervals of {DRAWS:,} draws: Monte Carlo error of their ends (1 sd) at most"
+NEAR_ENDS = (0.05 - _ERROR, 0.05 + _ERROR, 0.95 - _ERROR, 0.95 + _ERROR)
+"""Quantiles one standard error on either side of an interval's ends."""
 NOISE = 1e-9  # width of an interval over the value: so much is rounding
 MAX_DRIVERS = 3  # values named as those that make a result uncertain
 MIN_SHARE = 0.05  # of a result's variance, from which a value is named
@@ -233,6 +240,7 @@ def _left_out(
 def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
     """Return an answer with 90 % intervals of its results, and what they depend on."""
     from ..reconstruction.bounds import BOUNDED, bounds
+    from ..reconstruction.densities import quantile
 
     case = answer.case
     # random draws do not depend on the file's order; a TA that follows a course is a number
@@ -248,15 +256,14 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
         correlations=case.correlations,
         limits=False,  # the answer has intervals only
     )
-    varying = {
-        name: bound
-        for name, bound in sample.outputs.items()
-        if bound.interval[1] - bound.interval[0] > NOISE * abs(bound.nominal)
-    }
-    squares = {
-        name: {n: effect * effect for n, effect in bound.drivers.items()}
-        for name, bound in varying.items()
-    }
+    intervals, squares, error = {}, {}, 0.0
+    for name, bound in sample.outputs.items():
+        width = bound.interval[1] - bound.interval[0]
+        if width > NOISE * abs(bound.nominal):
+            intervals[name] = bound.interval
+            squares[name] = {n: effect * effect for n, effect in bound.drivers.items()}
+            lows, highs = quantile(sample.draws[name], NEAR_ENDS).reshape(2, 2)
+            error = max(error, np.ptp(lows) / 2 / width, np.ptp(highs) / 2 / width)
     warnings = [
         f"in {100 * fraction:.2g} % of the draws {words}"
         for name, fraction in sample.warnings.items()
@@ -266,8 +273,9 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
         answer,
         asked="bounds",
         question=f"{answer.question} with limits of {', '.join(case.ranges)}",
-        found=numbers_of(case, values, {name: bound.interval for name, bound in varying.items()}),
+        found=numbers_of(case, values, intervals),
         sections={"depends": _dependences(squares)},
+        remarks=(*answer.remarks, f"{MONTE_CARLO} {100 * error:.2g} % of the width"),
         warnings=(*answer.warnings, *warnings),
     )
 
@@ -283,7 +291,7 @@ def _dependences(variances: Mapping[str, Mapping[str, float]]) -> tuple[str, ...
     results: dict[str, list[str]] = {}
     for result, parts in variances.items():
         total = sum(parts.values()) or 1.0
-        largest = sorted(parts, key=parts.__getitem__, reverse=True)[:MAX_DRIVERS]
+        largest = nlargest(MAX_DRIVERS, parts, key=parts.__getitem__)
         inputs = [n for n in largest if parts[n] >= MIN_SHARE * total and [*parts] != [result]]
         words = ", ".join(f"{name} {100 * parts[name] / total:.0f} %" for name in inputs)
         results.setdefault(words, []).append(result)
@@ -295,7 +303,7 @@ def given_of(case: Case) -> tuple[Row, ...]:
     rows = []
     for name, entry in case.written.items():
         if name in INPUTS:
-            has_unit = any(c.isalpha() or c == "%" for c in entry)
+            has_unit = any(map(str.isalpha, entry))
             unit = "" if has_unit else unit_of(case, name)
             source = case.written.get(name + SOURCE, "")
             rows.append(Row(name, case.view.meaning(name), unit, entry, source))
@@ -325,24 +333,25 @@ def numbers_of(
     """
     rows = {}
     numbers = {name: float(case.view.shown(name, value)) for name, value in values.items()}
+    rules = {name: quantity(name).unit for name in numbers}
     for name, value in numbers.items():
-        rule, meaning = quantity(name).unit, quantity(name).meaning
-        group = [x for n, x in numbers.items() if quantity(n).unit == rule]
-        ends, interval, width = None, "", 0.0
-        if name in intervals:
-            low, high = case.view.shown_ends(name, *intervals[name])
-            width = high - low
-            if rule == ANGLE and math.isfinite(value):  # a heading is within one turn
-                turns = 360.0 * round((value - (low + high) / 2) / 360.0)
-                low, high = low + turns, high + turns
-            ends = low, high
-        decimals = decimals_in(rule, group, width)
-        if ends:
-            interval = " .. ".join(round_number(end, decimals) for end in ends)
+        ends = case.view.shown_ends(name, *intervals[name]) if name in intervals else None
+        if ends and rules[name] == ANGLE and math.isfinite(value):  # a heading is within one turn
+            turns = 360.0 * round((value - sum(ends) / 2) / 360.0)
+            ends = ends[0] + turns, ends[1] + turns
+        group = [x for n, x in numbers.items() if rules[n] == rules[name]]
+        decimals = decimals_in(rules[name], group, ends[1] - ends[0] if ends else 0.0)
         text = round_number(value, decimals)
-        note = clock(value) if text and "PDOF" in name else ""
-        result = value if text else None
-        rows[name] = Row(name, meaning, unit_of(case, name), text, note, interval, result, ends)
+        rows[name] = Row(
+            name,
+            quantity(name).meaning,
+            unit_of(case, name),
+            text,
+            clock(value) if text and "PDOF" in name else "",
+            " .. ".join(round_number(end, decimals) for end in ends or ()),
+            value if text else None,
+            ends,
+        )
     return rows
 
 
@@ -394,11 +403,10 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
     scene, warnings = case.numbers, words.warnings(impact, view)
     with suppress(UserError):  # an impact that leaves inputs open has no scene
         scene = impact.scene()
-        more, _ = evaluate(scene, (*(name for name in wanted if name not in values), "STATUS"))
-        bits = int(more["STATUS"])
-        values |= {name: float(x) for name, x in more.items() if not math.isnan(x)}
+        more, _ = evaluate(scene, (*wanted, "STATUS"))
+        values = {name: float(x) for name, x in more.items() if not math.isnan(x)} | values
         if not impact.is_adverse:
-            warnings += status.sentences(bits & ~status.IMPOSSIBLE)
+            warnings += status.sentences(int(more["STATUS"]) & ~status.IMPOSSIBLE)
     is_exact = {*case.entries} - {*case.ranges}
     names = wanted or [name for name in BACKWARD if name not in is_exact]
     results = [name for name in names if name in values or name in impact.intervals]

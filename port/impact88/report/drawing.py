@@ -142,27 +142,22 @@ def draw(answer: Answer) -> str:
     if math.inf in sizes.values():
         raise UserError("a value is too large to be drawn")
     rows = {**numbers_of(case, sizes), **answer.found}
-    bodies = {name: _body(name, values, case) for name in "AB"}
-    scale = REACH / max(abs(body.outline).max() for body in bodies.values())
-    # north, which is x of SAE axes, is up
-    turn = scale * (1j if view.axes and view.headings else 1)
-    places = {
-        name: Body(body.words, (body.center * turn).conjugate(), np.conj(body.outline * turn))
-        for name, body in bodies.items()
-    }
-    arrows = [
-        arrow._replace(points=np.conj(arrow.points * turn / scale))
-        for arrow in _arrows(bodies, values, rows, scale)
-        if arrow.kind != "plane" or "GA" in case.entries
-    ]
-    labels, low, high = _labels(places, arrows)
+    turn = 1j if view.axes and view.headings else 1  # north, which is x of SAE axes, is up
+    shapes = {name: _body(name, values, case, turn) for name in "AB"}
+    scale = REACH / max(abs(outline).max() for _, _, outline in shapes.values())
+    bodies = {n: Body(words, scale * at, scale * line) for n, (words, at, line) in shapes.items()}
+    arrows = list(_arrows(bodies, values, rows, turn, scale))
+    if "GA" in case.entries:
+        normal = (turn * _unit(values["GA"])).conjugate()
+        arrows.append(Arrow("plane", "", HALF_PLANE * normal * np.array([1j, -1j])))
+    labels, low, high = _labels(bodies, arrows)
     unit = float(view.map("DA")[0])
     amount = float(f"{REACH / 4 / scale / unit:.0e}")  # one digit times a power of ten
     return render(
         "drawing.svg",
         answer=answer,
         case=case,
-        bodies=places,
+        bodies=bodies,
         arrows=arrows,
         labels=labels,
         low=low,
@@ -207,8 +202,8 @@ def _shape(name: str, values: Mapping[str, float], case: Case) -> tuple[str, Poi
     return words, shape.real * length + 1j * shape.imag * width
 
 
-def _body(name: str, values: Mapping[str, float], case: Case) -> Body:
-    """Return a body in the plane."""
+def _body(name: str, values: Mapping[str, float], case: Case, turn: complex) -> Body:
+    """Return a body on paper, in base units."""
     side = 1 if name == "A" else -1
     words, shape = _shape(name, values, case)
     inward = side * _unit(values["GA"])  # from the contact plane to the body
@@ -218,41 +213,39 @@ def _body(name: str, values: Mapping[str, float], case: Case) -> Body:
     center = -values.get(f"D{name}", 0.0) * ahead * _unit(values.get(f"P{name}", 0.0))
     if words in (DISC, BARRIER) or not (values.get("DA") or values.get("DB")):
         center = inward * float((outline / inward).real.max())  # moved to the contact plane
-    return Body(words, center, center + outline)
+    return Body(words, (turn * center).conjugate(), np.conj(turn * (center + outline)))
 
 
 def _arrows(
     bodies: Mapping[str, Body],
     values: Mapping[str, float],
     rows: Mapping[str, Row],
+    turn: complex,
     scale: float,
 ) -> Iterator[Arrow]:
-    """Yield the arrows in px along the listing's axes."""
-    speeds = [x for name, x in values.items() if name in ("SA", "SB", "SAF", "SBF")]
-    fastest = max(speeds) or 1.0
+    """Yield the arrows on paper but for the contact plane."""
+    fastest = max(x for name, x in values.items() if name in ("SA", "SB", "SAF", "SBF")) or 1.0
     for name, body in bodies.items():
-        velocities = [values.get(component, math.nan) for component in VELOCITIES[name]]
-        before, after = complex(*velocities[:2]), complex(*velocities[2:])
-        step = SIDE_STEP * (1j if name == "A" else -1j)
-        center = body.center * scale
+        components = np.array([values.get(n, math.nan) for n in VELOCITIES[name]])
+        before, after = np.conj(turn * components.view(complex)).tolist()
+        step = SIDE_STEP * (-1j if name == "A" else 1j)
         moves = ("before", before, 0j), ("after", after, step), ("change", after - before, -step)
         for kind, velocity, aside in moves:
             run = LONGEST_VELOCITY / fastest * velocity
             if abs(run) > SHORTEST:  # not of NaN
-                start = center + aside * run / abs(run) - run * (kind == "before")
+                start = body.center + aside * run / abs(run) - run * (kind == "before")
                 row = rows.get(ARROWS[kind][1].format(name))
                 yield Arrow(kind, name, start + run * np.array([0, 1]), row)
         for kind, radius in SPIN_RADII.items():
             size = ARROWS[kind][1].format(name)
             spin = values.get(size, 0.0)
             if abs(spin) * LONGEST_VELOCITY / fastest * REACH / scale > SHORTEST:
-                middle, turn = cmath.phase(center), math.copysign(SPIN_TURN, spin)
-                arc = _arc(radius, middle - turn, middle + turn)
-                yield Arrow(kind, name, center + arc, rows.get(size))
+                middle, half = cmath.phase(body.center), math.copysign(SPIN_TURN, spin)
+                arc = _arc(radius, middle + half, middle - half)
+                yield Arrow(kind, name, body.center + arc, rows.get(size))
         if name == "A" and values.get("P"):
             run = IMPULSE_LENGTH * values["MA"] / values["P"] * (after - before)
             yield Arrow("impulse", "P", run * np.array([0, 1]), rows.get("P"))
-    yield Arrow("plane", "", 1j * HALF_PLANE * _unit(values["GA"]) * np.array([-1, 1]))
 
 
 def _labels(
