@@ -1,9 +1,11 @@
 """Tables in every format: the same numbers in and out, and files that are refused by line."""
 
 import csv
+import io
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -83,6 +85,23 @@ def test_csv_has_the_bits_of_floats(tmp_path: Path) -> None:
     written = [float(row["x"] or "nan") for row in rows]
     assert np.array_equal(written, values * 2, equal_nan=True)
     assert [row["text"] for row in rows] == texts * 2
+
+
+def test_standard_output_that_takes_a_part_has_it_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Pipe(io.RawIOBase):
+        data = b""
+
+        def writable(self) -> bool:
+            return True
+
+        def write(self, data: Any) -> int:
+            self.data += bytes(data)[:5]
+            return min(len(data), 5)
+
+    pipe = Pipe()
+    monkeypatch.setattr("sys.stdout", SimpleNamespace(buffer=pipe, flush=pipe.flush))
+    write_table("-", [{"x": list("abcdefghi")}])
+    assert pipe.data == b"x\na\nb\nc\nd\ne\nf\ng\nh\ni\n"
 
 
 @pytest.mark.usefixtures("_engine")

@@ -9,50 +9,41 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import UserError
-from ..files import Source, replacing
-from . import polarsformats, textformats
-from .textformats import Column, Table
+from ..files import replacing
+from .polarsformats import read_excel, read_parquet, write_excel, write_parquet
+from .textformats import Column, Table, read_csv, read_json, write_csv, write_json
 
-ENDINGS = {
-    ".csv": "csv",
-    ".tsv": "csv",
-    ".txt": "csv",
-    ".jsonl": "jsonl",
-    ".ndjson": "jsonl",
-    ".parquet": "parquet",
-    ".xlsx": "xlsx",
+_Writer = Callable[[IO[bytes], Iterable[Mapping[str, Column]]], None]
+
+_FORMATS: dict[str, tuple[Callable[[str], Table], _Writer]] = {
+    **dict.fromkeys((".csv", ".tsv", ".txt"), (read_csv, write_csv)),
+    **dict.fromkeys((".jsonl", ".ndjson"), (read_json, write_json)),
+    ".parquet": (read_parquet, write_parquet),
+    ".xlsx": (read_excel, write_excel),
 }
-"""Formats by the ending of a file's name."""
-_WRITERS: dict[str, Callable[[IO[bytes], Iterable[Mapping[str, Column]]], None]] = {
-    "csv": textformats.write_csv,
-    "jsonl": textformats.write_json,
-    "parquet": polarsformats.write_parquet,
-    "xlsx": polarsformats.write_excel,
-}
+"""Reader and writer by the ending of a file's name."""
 
 
-def format_of(path: str, given: str = "") -> str:
-    """Return the format of a file: ``given``, else by the ending of its name; CSV for a standard
-    stream. Raises UserError for another ending."""
-    ending = Path(path).suffix.lower()
-    if given or path == "-":
-        return given or "csv"
-    if ending not in ENDINGS:
-        raise UserError(
-            f"expected .toml to read, or a table in {' '.join(ENDINGS)} or with --from, --to", path
-        )
-    return ENDINGS[ending]
+def _format_of(path: str) -> tuple[Callable[[str], Table], _Writer]:
+    """Return reader and writer of a file: CSV for a standard stream. Raises UserError."""
+    ending = ".csv" if path == "-" else Path(path).suffix.lower()
+    if ending not in _FORMATS:
+        raise UserError(f"expected .toml to read, or a table in {' '.join(_FORMATS)}", path)
+    return _FORMATS[ending]
 
 
-def read_table(path: str, kind: str = "", digits: bool = False) -> Table:
+def is_csv(path: str) -> bool:
+    """Return True for a file whose numbers are texts. Raises UserError for one of no format."""
+    return _format_of(path)[0] is read_csv
+
+
+def read_table(path: str, digits: bool = False) -> Table:
     """Return a table, whose blocks of rows are read as they are asked for.
 
     Parameters
     ----------
     path : str
-        The file, ``-`` for standard input (CSV or JSON Lines).
-    kind : {"", "csv", "jsonl", "parquet", "xlsx"}, default ""
-        Its format, by default that of its name.
+        The file, ``-`` for CSV on standard input. Its name gives the format.
     digits : bool, default False
         Keep the digits of numbers in JSON, for the 1988 arithmetic; texts always keep them.
 
@@ -61,44 +52,33 @@ def read_table(path: str, kind: str = "", digits: bool = False) -> Table:
     UserError
         For a file that cannot be read as a table, here or in its blocks.
     """
-    kind = format_of(path, kind)
-    if kind == "csv":
-        return textformats.read_csv(path)
-    if kind == "jsonl":
-        return textformats.read_json(path, digits)
-    if path == "-":
-        raise UserError(f"{kind} cannot be read from standard input; expected a file")
-    Source(path).close()  # a file that cannot be opened is named here
-    return polarsformats.read_parquet(path) if kind == "parquet" else polarsformats.read_excel(path)
+    reader, _ = _format_of(path)
+    return read_json(path, str) if digits and reader is read_json else reader(path)
 
 
-def write_table(path: str, blocks: Iterable[Mapping[str, Column]], kind: str = "") -> None:
+def write_table(path: str, blocks: Iterable[Mapping[str, Column]]) -> None:
     """Write blocks of rows as a table, whole or not at all.
 
     Parameters
     ----------
     path : str
-        The file, ``-`` for standard output.
+        The file, ``-`` for CSV on standard output.
     blocks : iterable of mapping of str to column
         Columns by heading: arrays of numbers, lists of texts, or series of polars.
-    kind : str, default ""
-        See `read_table`.
 
     Raises
     ------
     UserError
         If the file cannot be written.
     """
-    kind = format_of(path, kind)
-    if path == "-" and kind not in ("csv", "jsonl"):
-        raise UserError(f"{kind} cannot be written to standard output; expected a file")
-    if path == "-":
-        sys.stdout.flush()
-        output = io.BufferedWriter(sys.stdout.buffer)  # an unbuffered one may write a part only
-        try:
-            _WRITERS[kind](output, blocks)
-        finally:
-            output.detach()
+    _, write = _format_of(path)
+    if path != "-":
+        with replacing(path, "wb") as file:
+            write(file, blocks)
         return
-    with replacing(path, "wb") as file:
-        _WRITERS[kind](file, blocks)
+    sys.stdout.flush()
+    output = io.BufferedWriter(sys.stdout.buffer)  # an unbuffered one may write a part only
+    try:
+        write(output, blocks)
+    finally:
+        output.detach()

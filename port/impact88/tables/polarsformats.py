@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
+from itertools import count
 from typing import IO, Any
 
 from ..errors import UserError, library
@@ -33,31 +34,25 @@ def read_parquet(path: str) -> Table:
     pl = polars()
     with decoding(path, "is not a Parquet file"):
         lazy = pl.scan_parquet(path, glob=False)
-        names = lazy.collect_schema().names()
-        rows = lazy.select(pl.len()).collect().item()
-    _check_size(path, 8 * rows * len(names))
-    return _table_of(lazy, names, path, 1)
+        _check_size(path, 8 * lazy.select(pl.len()).collect().item() * len(lazy.collect_schema()))
+        return _table_of(lazy.collect(), path, 1)
 
 
-def _table_of(lazy: Any, names: list[str], path: str, first: int) -> Table:
-    """Return a lazy frame as a table whose first row has a number: numbers as doubles, and all else
-    as texts."""
+def _table_of(frame: Any, path: str, first: int) -> Table:
+    """Return a frame as a table whose first row has a number: numbers as doubles, and all else as
+    texts."""
     pl = polars()
     numeric = pl.selectors.numeric()
-    texts = (~numeric).cast(pl.String, strict=False)
-    lazy = lazy.with_columns(numeric.cast(pl.Float64), texts)
-
-    def blocks() -> Iterator[Block]:
-        number = first
-        while True:
-            with decoding(path, "cannot be decoded"):
-                frame = lazy.slice(number - first, BLOCK_ROWS).collect()
-            if not frame.height:
-                return
-            yield Block(dict(zip(names, frame, strict=True)), range(number, number + frame.height))
-            number += frame.height
-
-    return Table(check_headings(names, path), blocks(), path)
+    frame = frame.select(numeric.cast(pl.Float64), (~numeric).cast(pl.String, strict=False)).select(
+        frame.columns
+    )
+    names = check_headings(frame.columns, path)
+    parts = zip(count(first, BLOCK_ROWS), frame.iter_slices(BLOCK_ROWS), strict=False)
+    blocks = (
+        Block(dict(zip(names, part, strict=True)), range(number, number + part.height))
+        for number, part in parts
+    )
+    return Table(names, blocks, path)
 
 
 def read_excel(path: str) -> Table:
@@ -66,18 +61,17 @@ def read_excel(path: str) -> Table:
 
     A column's cells are read as numbers, with all their bits, and what is left as text. Raises
     UserError."""
-    pl = polars()
+    polars()
     fastexcel = library("fastexcel", "tables", "an .xlsx")
-
-    def load(kind: str, **options: Any) -> Any:
-        with decoding(path, "is not an .xlsx workbook"):
-            return book.load_sheet(0, dtypes=kind, header_row=None, **options).to_polars()
-
     with decoding(path, "is not an .xlsx workbook"):
         with zipfile.ZipFile(path) as archive:
             _check_size(path, sum(member.file_size for member in archive.infolist()))
         book = fastexcel.read_excel(path)
-    rows = [[cell or "" for cell in row] for row in load("string", n_rows=MAX_HEADING_ROW).rows()]
+        numbers, texts = (
+            book.load_sheet(0, header_row=None, dtypes=kind, dtype_coercion="coerce").to_polars()
+            for kind in ("float", "string")
+        )
+    rows = [[cell or "" for cell in row] for row in texts.head(MAX_HEADING_ROW).rows()]
     counts = [sum(bool(heading_name(cell)[0]) for cell in row) for row in rows]
     if not any(counts):
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
@@ -86,11 +80,9 @@ def read_excel(path: str) -> Table:
     while not headings[-1].strip():
         headings.pop()
     names = check_headings(headings, path)
-    options = {"skip_rows": place + 1, "use_columns": [*range(len(names))], "column_names": names}
-    numbers = load("float", dtype_coercion="coerce", **options)
-    texts = load("string", dtype_coercion="coerce", **options)
-    frame = pl.DataFrame(map(_merge_cells, numbers, texts))
-    return _table_of(frame.lazy(), names, path, place + 2)
+    columns = zip(names, numbers[place + 1 :], texts[place + 1 :], strict=False)
+    frame = polars().DataFrame({name: _merge_cells(*cells) for name, *cells in columns})
+    return _table_of(frame, path, place + 2)
 
 
 def _merge_cells(numbers: Any, texts: Any) -> Any:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from ..errors import UserError, quoted
 from ..mechanics.solve import evaluate, solve
 from ..names import RESULTS, SCENE, check_names, quantity
 from ..status import Status
-from .engine import format_of, read_table, write_table
+from .engine import is_csv, read_table, write_table
 from .textformats import Block, Column, Table, heading_name
 
 Floats = NDArray[np.float64]
@@ -32,6 +32,7 @@ MAX_LISTED = 20  # bad rows kept for the terminal: one screenful
 APPLESOFT_RESULTS = tuple(n for n, row in RESULTS.items() if row.line or n == "KF")
 """Results of the 1988 arithmetic."""
 ZERO_DETERMINANT = "ZERO DETERMINANT"
+_POINT_NUMBERS = {name: float(text) for name, text in POINT_DEFAULTS.items()}
 _EMPTY = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
 """Results of a row that cannot be used; others are NaN."""
 
@@ -76,8 +77,6 @@ def solve_table(
     replaced: Collection[str] = (),
     arithmetic: str = "float64",
     results_only: bool = False,
-    source_format: str = "",
-    target_format: str = "",
     progress: Callable[[int, float | None], None] | None = None,
 ) -> Solved:
     """Solve each row of a table, and write the table with its results.
@@ -98,8 +97,6 @@ def solve_table(
         Double precision, or the 1988 program's with two more columns, ERROR and LINE.
     results_only : bool, default False
         Leave the scene's columns out.
-    source_format, target_format : str, optional
-        Formats of standard streams.
     progress : callable, optional
         Called with the number of rows done, and the fraction of the file read if that is known.
 
@@ -113,10 +110,10 @@ def solve_table(
     UserError
         For a file that is no table, lacks a column, or cannot be written.
     """
-    kind = format_of(target, target_format)
+    as_text = is_csv(target)
     if isinstance(source, str):
-        source = read_table(source, source_format, arithmetic == "applesoft")
-    solver = Solver(source, results, case, replaced, arithmetic, kind == "csv", results_only)
+        source = read_table(source, arithmetic == "applesoft")
+    solver = Solver(source, results, case, replaced, arithmetic, as_text, results_only)
     solved = solver.solved
     extent, position = source.extent
 
@@ -128,7 +125,7 @@ def solve_table(
         if not solved.rows:
             yield solver.solve(Block({name: [] for name in source.names}, []))
 
-    write_table(target, blocks(), kind)
+    write_table(target, blocks())
     solved.remarks += solver.remarks()
     return solved
 
@@ -161,10 +158,12 @@ class Solver:
         as_text: bool = True,
         results_only: bool = False,
     ) -> None:
-        self.table, self.as_text, self.solved = table, as_text, Solved()
+        self.table, self.as_text, self.results_only = table, as_text, results_only
+        self.solved = Solved()
         self.is_applesoft = arithmetic == "applesoft"
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         check_names(results, allowed, f"result of --arithmetic {arithmetic}", "--results")
+        self.results = tuple(results) or allowed
         case = case or Case.of({})
         try:
             headings, self.view = read_headings(table.names, case.view)
@@ -172,37 +171,24 @@ class Solver:
             raise UserError(str(error), table.where) from None
         is_inferred = self.view != case.view
         self.case = case = Case.of(case.written, case.source, self.view, case.places, is_inferred)
-        scene = {name: column for name, column in headings.items() if name in SCENE}
-        self.names = {heading: name for name, (heading, _) in scene.items()}
-        self.kept = [h for h in table.names if not (results_only and h in self.names)]
-        self.maps = {name: self.view.map(name, unit) for name, (_, unit) in scene.items()}
-        self.replaced = {*replaced} & {*case.entries}
-        self.columns = {n: column for n, column in scene.items() if n not in self.replaced}
-        derived = {*case.derived} - {*self.columns}  # each row has its own
-        known = {*self.columns, *derived}
+        self.names = {h: name for name, (h, _) in headings.items() if name in SCENE}
+        self.units = {name: headings[name][1] for name in self.names.values()}
+        replaced = {*replaced} & {*case.entries}
+        self.columns = {name: h for h, name in self.names.items() if name not in replaced}
+        known = {*self.columns, *case.derived}
         self.constants = {n: x for n, x in case.numbers.items() if n not in known}
-        self._remarked: dict[str, tuple[int, int, str]] = {}
-        self._choose_results(tuple(results) or allowed, known | {*self.constants})
-
-    def _choose_results(self, results: Sequence[str], known: Collection[str]) -> None:
-        """Set the results, without those of point masses whose inputs the table lacks. Raises
-        UserError where it lacks another column."""
-        self.lacking = [name for name in SCENE if name not in known]
-        may_be_points = "M" in self.columns or self.constants.get("M") == 4
-        absent = [n for n in self.lacking if not may_be_points or n not in POINT_DEFAULTS]
-        if absent:
-            message = f"no column {' '.join(absent)}; --set NAME=VALUE gives one for all rows"
-            raise UserError(message, self.table.where)
-        scene = {"WA": 0.0, "WB": 0.0, **dict.fromkeys(known, 1.0), "M": 4.0}
-        self.left_out = {} if self.is_applesoft else evaluate(scene, results)[1]
-        self.results = [name for name in results if name not in self.left_out]
-        if not self.results:
-            raise UserError("; ".join(self.remarks()), self.table.where)
+        known.update(self.constants)
+        if "M" in self.columns or self.constants.get("M") == 4:
+            known.update(POINT_DEFAULTS)  # rows of bodies that lack them are bad
+        if absent := " ".join(name for name in SCENE if name not in known):
+            message = f"no column {absent}; --set NAME=VALUE gives one for all rows"
+            raise UserError(message, table.where)
+        self._remarked: dict[str, list[Any]] = {}
 
     def remarks(self) -> list[str]:
         """Return the remarks on all rows so far."""
-        lines = [f"{name} needs {' '.join(names)}" for name, names in self.left_out.items()]
-        for row, count, text in self._remarked.values():
+        lines = []
+        for row, text, count in self._remarked.values():
             tail = f" and {count - 1:,} more" if count > 1 else ""
             lines.append(f"{self.table.counts} {row:,}{tail}: {text}")
         return lines
@@ -220,59 +206,60 @@ class Solver:
         self.solved.listed += [rows.bad[at] for at in bad[: MAX_LISTED - len(self.solved.listed)]]
         if self.is_applesoft:
             self.solved.ended += int(np.sum(~np.isin(results["ERROR"], ["", ZERO_DETERMINANT])))
-        columns = {heading: self._output_column(rows, heading) for heading in self.kept}
+        columns: dict[str, Column] = {}
+        for heading, column in block.columns.items():
+            if heading not in self.names:
+                columns[heading] = column
+            elif not self.results_only:
+                columns[heading] = self._output_column(rows, self.names[heading])
         for name, values in results.items():
-            is_result = name in RESULTS
-            heading = self.view.heading(name) if is_result else name
-            columns[heading] = self.view.shown(name, values) if is_result else values
+            if name in RESULTS:
+                columns[self.view.heading(name)] = self.view.shown(name, values)
+            else:
+                columns[name] = values
         return columns
 
     def _read(self, block: Block) -> _Rows:
         """Return the rows of a block: as columns of numbers, and as cases where a row has anything
         else."""
-        count = len(block.rows)
-        shown = {n: plain_numbers(block.columns[h]) for n, (h, _) in self.columns.items()}
-        values = {n: np.full(count, self.constants.get(n, math.nan)) for n in SCENE}
+        cells = {name: block.columns[heading] for name, heading in self.columns.items()}
+        shown = {name: plain_numbers(column) for name, column in cells.items()}
+        values = {n: np.full(len(block.rows), self.constants.get(n, math.nan)) for n in SCENE}
         for name, numbers in shown.items():
-            factor, offset = map(float, self.maps[name])
+            factor, offset = map(float, self.view.map(name, self.units[name]))
             values[name] = offset + factor * numbers
-        for name in self.lacking:
-            values[name][values["M"] == 4] = POINT_DEFAULTS[name]
-        is_other = np.zeros(count, bool)
+        is_other = np.zeros(len(block.rows), bool)
         for name in SCENE:
             if name not in self.constants:
                 is_other |= ~np.isfinite(values[name])
         if self.is_applesoft:
-            for heading, _ in self.columns.values():
-                lengths = [len(str(cell)) for cell in block.columns[heading]]
-                is_other |= np.array(lengths, int) > MAX_LENGTH
-        rows = _Rows(block, shown, values, {}, {})
+            for column in cells.values():
+                lengths = enumerate(map(len, map(str, column)))
+                is_other[[at for at, length in lengths if length > MAX_LENGTH]] = True
+        rows = _Rows(block.rows, cells, shown, values, {}, {})
         for at in np.flatnonzero(is_other).tolist():
             try:
-                rows.cases[at] = case = self._read_row(block, at)
+                rows.cases[at] = self._read_row(rows, at)
             except UserError as error:
                 rows.bad[at] = str(error)
-                continue
-            defaults = {name: float(case.texts[name]) for name in case.omitted}
-            for name, value in {**defaults, **case.numbers}.items():
+        for at, case in rows.cases.items():
+            for name, value in {**_POINT_NUMBERS, **case.numbers}.items():
                 values[name][at] = value
         return rows
 
-    def _read_row(self, block: Block, at: int) -> Case:
+    def _read_row(self, rows: _Rows, at: int) -> Case:
         """Return a row as a case. Raises UserError."""
-        where = self._place(block, at)
-        columns = self.columns.items()
-        cells = {name: _entry(block.columns[h][at], unit) for name, (h, unit) in columns}
+        where = self.table.place(rows.numbers[at])
+        cells = {n: _entry(column[at], self.units[n]) for n, column in rows.cells.items()}
         case = Case.of({**self.case.written, **cells}, where, self.view)
         if case.view != self.view:
             raise UserError("has units; expected them in the headings, or --units", where)
-        lacks: Mapping[str, Sequence[str]] = {}
+        lacking: set[str] = set()
         if case.omitted and not self.is_applesoft:
-            scene = {**dict.fromkeys(("WA", "WB"), 0.0), **case.numbers}
-            lacks = evaluate(scene, self.results)[1]
-        absent = {name for names in lacks.values() for name in names}
+            _, lacks = evaluate({"WA": 0.0, "WB": 0.0, **case.numbers}, self.results)
+            lacking.update(*lacks.values())
         for name in SCENE:
-            if name not in case.texts or name in absent:
+            if name not in case.texts or name in lacking:
                 raise UserError(f"{name} is empty; expected a number", where)
             if name in case.ranges and name in cells:
                 raise UserError(f"{name} = {quoted(cells[name])}: expected one number", where)
@@ -280,16 +267,12 @@ class Solver:
                 raise UserError(f"{name} = inf cannot be typed; expected a number", where)
         return case
 
-    def _place(self, block: Block, at: int) -> str:
-        """Return the place of a row for messages."""
-        return f"{self.table.where}, {self.table.counts} {block.rows[at]:,}"
-
     def _solve(self, rows: _Rows) -> dict[str, NDArray[Any]]:
         """Return the results in double precision."""
         for name, mask, words in impossible(rows.values):
             for at in np.flatnonzero(mask).tolist():
                 digits = to_text(float(rows.values[name][at]))
-                place = self._place(rows.block, at)
+                place = self.table.place(rows.numbers[at])
                 rows.bad.setdefault(at, f"{place}: {name} = {digits} {words}")
         return solve(rows.values, self.results)
 
@@ -297,27 +280,23 @@ class Solver:
         """Return the results of the 1988 arithmetic."""
         from ..program.replay import replay
 
-        count = len(rows.block.rows)
         outcome = replay({name: self._texts(rows, name) or ["6"] for name in SCENE})
         results = {name: outcome.floats(name) for name in self.results}
         results["ERROR"] = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
         results["LINE"] = np.array(outcome.line)
-        return {name: values[:count] for name, values in results.items()}
+        return {name: values[: len(rows.numbers)] for name, values in results.items()}
 
     def _texts(self, rows: _Rows, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
-        if name in self.columns:
-            cells = rows.block.columns[self.columns[name][0]]
-            texts = [_entry(cell, "").upper() for cell in cells]
+        texts = [self.case.texts.get(name, "6")] * len(rows.numbers)
+        if name in rows.cells:
+            texts = [_entry(cell, "").upper() for cell in rows.cells[name]]
             for at in (*rows.cases, *rows.bad):
                 texts[at] = "6"
-            factor, offset = self.maps[name]
+            factor, offset = self.view.map(name, self.units[name])
             if factor != 1 or offset:
                 exact = (Amount.exactly(to_double(text), text) for text in texts)
                 texts = [amount.mapped(factor, offset).typed for amount in exact]
-        else:
-            constant = self.case.texts.get(name) or POINT_DEFAULTS.get(name, "6")
-            texts = [constant] * len(rows.block.rows)
         for at, case in rows.cases.items():
             texts[at] = case.texts[name]
         return texts
@@ -329,32 +308,32 @@ class Solver:
         by_vehicle = {name[1]: angles for name, angles in courses.items()}
         for name, where, words in implausible(rows.values, self.view, by_vehicle):
             places = np.flatnonzero(where)
-            if places.size and name in self.columns:
-                cell = rows.block.columns[self.columns[name][0]][int(places[0])]
-                first = rows.block.rows[places[0]], 0, f"{name} = {cell}: {words}"
-                row, count, text = self._remarked.get(name, first)
-                self._remarked[name] = row, count + places.size, text
+            if places.size and name in rows.cells:
+                at = int(places[0])
+                first = [rows.numbers[at], f"{name} = {rows.cells[name][at]}: {words}", 0]
+                self._remarked.setdefault(name, first)[2] += places.size
 
-    def _output_column(self, rows: _Rows, heading: str) -> Column:
-        """Return a column of the table for the output."""
-        name = self.names.get(heading, "")
-        if not name or (self.as_text and name not in self.replaced):
-            return rows.block.columns[heading]
-        factor, offset = map(float, self.maps[name])
+    def _output_column(self, rows: _Rows, name: str) -> Column:
+        """Return a column of the scene for the output."""
+        if self.as_text and name in rows.cells:
+            return rows.cells[name]
+        factor, offset = map(float, self.view.map(name, self.units[name]))
         numbers = (rows.values[name] - offset) / factor + 0.0  # no -0
         numbers[[at for at, case in rows.cases.items() if name in case.omitted]] = math.nan
-        cells = rows.shown.get(name, numbers)
-        return np.where(np.isfinite(cells), cells, numbers)
+        shown = rows.shown.get(name, numbers)
+        return np.where(np.isfinite(shown), shown, numbers)
 
 
 class _Rows(NamedTuple):
     """The rows of one block.
 
-    ``shown``: the columns of the scene as in the file, ``values``: in base units along the
-    listing's axes, NaN where a row has something else; ``cases``: the rows read as cases; ``bad``:
-    the reasons of the rows that cannot be used; both by place in the block."""
+    ``numbers``: their lines; ``cells``: the columns of the scene as in the file, ``shown``: as
+    numbers, NaN for anything else; ``values``: in base units along the listing's axes; ``cases``:
+    the rows read as cases; ``bad``: the reasons of the rows that cannot be used; both by place in
+    the block."""
 
-    block: Block
+    numbers: Sequence[int]
+    cells: dict[str, Column]
     shown: dict[str, Floats]
     values: dict[str, Floats]
     cases: dict[int, Case]
@@ -372,13 +351,11 @@ def _entry(cell: Any, unit: str) -> str:
 
 def plain_numbers(column: Column) -> Floats:
     """Return a column as doubles, NaN where a cell is no plain number."""
-    if isinstance(column, np.ndarray):
-        return column.astype(np.float64, copy=False)
     if hasattr(column, "cast"):  # polars
-        import polars
-
-        return np.array(column.cast(polars.Float64, strict=False).to_numpy(), np.float64)
-    return np.array([_double(cell) for cell in column], np.float64)
+        column = column.cast(float, strict=False).to_numpy()
+    elif isinstance(column, list):
+        column = [_double(cell) for cell in column]
+    return np.asarray(column, np.float64)
 
 
 def _double(cell: Any) -> float:
@@ -399,22 +376,21 @@ def read_headings(
 
     Raises UserError for two columns of one quantity, for a unit that does not measure it, and where
     only some headings have units."""
-    headings: dict[str, tuple[str, str]] = {}
+    found: dict[str, tuple[str, str]] = {}
     for heading in names:
         name, symbol = heading_name(heading)
-        if name in headings:
-            raise UserError(f"{headings[name][0]} and {heading} are two columns of {name}")
+        if name in found:
+            raise UserError(f"{found[name][0]} and {heading} are two columns of {name}")
         if name:
-            is_read = bool(symbol) and name in measured
-            unit = unit_of(quantity(name).unit, symbol).symbol if is_read else ""
-            headings[name] = heading, unit
-    rules = {n: quantity(n).unit for n in headings if n in measured}
-    bare = [n for n, rule in rules.items() if is_measured(rule) and not headings[n][1]]
-    units = [unit_of(rule, headings[n][1]) for n, rule in rules.items() if headings[n][1]]
-    system = view.units or system_using(units)
+            found[name] = heading, symbol
+    rules = {n: quantity(n).unit for n in found if n in measured}
+    units = {n: unit_of(rule, found[n][1]) for n, rule in rules.items() if found[n][1]}
+    bare = [n for n, rule in rules.items() if is_measured(rule) and n not in units]
+    system = view.units or system_using(units.values())
     if system and bare and not view.units:
         raise UserError(
             f"some headings have units, and {bare[0]} has none; expected "
             f"{View(system).heading(bare[0])}, or --units {system} for columns without"
         )
-    return headings, View(system, view.axes, view.headings)
+    headings = {n: (h, units[n].symbol if n in units else "") for n, (h, _) in found.items()}
+    return headings, replace(view, units=system)

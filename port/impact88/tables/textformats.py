@@ -52,6 +52,10 @@ class Table(NamedTuple):
     counts: str = "row"
     extent: tuple[int | None, Callable[[], int]] = (None, int)
 
+    def place(self, number: int) -> str:
+        """Return the place of a row for messages."""
+        return f"{self.where}, {self.counts} {number:,}"
+
 
 def check_headings(names: Sequence[str], where: str) -> list[str]:
     """Return headings without blanks around them. Raises UserError for one that is empty or there
@@ -136,7 +140,7 @@ def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) 
     blank rows, or rows of another width, which polars fills without a word."""
     import polars
 
-    marks = np.count_nonzero(np.frombuffer(chunk, np.uint8) == ord(delimiter))
+    marks = chunk.count(delimiter.encode())
     rows = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
     if not chunk or b'"' in chunk or marks != rows * (len(names) - 1):
         return None
@@ -183,11 +187,11 @@ def _with_points(block: Block) -> Block:
 # -- JSON Lines
 
 
-def read_json(path: str, digits: bool = False) -> Table:
-    """Return the table in a file of JSON Lines, one object for each row. ``digits``: keep those of
-    numbers, as texts. Raises UserError."""
+def read_json(path: str, number: type[str] | None = None) -> Table:
+    """Return the table in a file of JSON Lines, one object for each row. ``number``: str to keep
+    the digits of numbers, as texts. Raises UserError."""
     where, source = display_name(path), Source(path)
-    objects = _json_objects(io.BufferedReader(source), where, str if digits else None)
+    objects = _json_objects(io.BufferedReader(source), where, number)
     first = next(objects, (1, {}))
     keys = list(first[1])
     rows = ((line, [row.get(key) for key in keys]) for line, row in chain([first], objects))
