@@ -123,7 +123,7 @@ def test_what_cannot_be_drawn_is_named() -> None:
     with pytest.raises(UserError, match="a value is too large to be drawn"):
         drawing(UX="1e200")
     scene = dict.fromkeys(("UX", "UY", "VX", "VY"), 1.0)
-    unknown_plane = Answer("reconstruct", "", (), {}, case_of("points", GA=""), scene=scene)
+    unknown_plane = Answer("reconstruct", "", {}, case_of("points", GA=""), scene=scene)
     with pytest.raises(UserError, match=r"GA .*the drawing shows"):
         draw(unknown_plane)
 

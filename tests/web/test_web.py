@@ -96,9 +96,14 @@ def test_a_request_without_the_token_is_not_found(port: int) -> None:
 
 def test_a_foreign_host_or_origin_is_refused(port: int) -> None:
     path, own = f"/{TOKEN}/", f"http://127.0.0.1:{port}"
-    assert status(port, "GET", path, Host=f"localhost:{port}") == 200
     assert status(port, "GET", path, Origin=own) == 200
-    for host in ("example.com", f"example.com:{port}", "127.0.0.1", f"127.0.0.1:{port + 1}"):
+    for host in (
+        "example.com",
+        f"localhost:{port}",
+        f"example.com:{port}",
+        "127.0.0.1",
+        f"127.0.0.1:{port + 1}",
+    ):
         assert status(port, "GET", path, Host=host) == 403
     for origin in ("http://example.com", "null", f"https://127.0.0.1:{port}", own + "0"):
         assert status(port, "GET", path, Origin=origin) == 403

@@ -8,11 +8,9 @@ those of the final velocities against 50 digits (needs pip install 'impact88[ora
 
 from __future__ import annotations
 
-from itertools import count
-
 from ..errors import library
 from .options import JSON, OUTPUT, Args
-from .output import progress, show
+from .output import show
 
 OPTIONS = (JSON, OUTPUT)
 
@@ -23,8 +21,6 @@ def main(args: Args) -> None:
     from ..bench import benchmark as bench
 
     computer = bench.computer()
-    steps, total = count(1), bench.count_steps(bench.REPEATS)
-    with progress("bench") as update:
-        rows = bench.measure(lambda: update(0, next(steps) / total))
+    rows = bench.measure(lambda: None)
     record = {"computer": computer, "measurements": [row._asdict() for row in rows]}
     show(args.json, "bench", record, [bench.markdown(rows, computer)])

@@ -18,7 +18,6 @@ says where a value comes from. axes = "sae" and headings = "compass" change dire
 from __future__ import annotations
 
 from ..cases.scenefile import SIGNS, TEMPLATES, template
-from ..errors import UserError
 from .options import CASE, OUTPUT, Args, case_of
 
 __doc__ = (__doc__ or "").format(
@@ -30,9 +29,7 @@ OPTIONS = (*CASE, OUTPUT)
 def main(args: Args) -> None:
     """Print a scene file."""
     kind = args.file or "planar"
-    if not args.sample and kind.replace("-", "").isalpha():
-        if args.set:
-            raise UserError("an empty file takes no --set; expected a FILE.toml")
+    if not (args.sample or args.set) and kind.replace("-", "").isalpha():
         print(template(kind, args.units or "us"), end="")
     else:
         print(case_of(args).toml(), end="")

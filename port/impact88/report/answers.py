@@ -16,7 +16,6 @@ import numpy as np
 
 from .. import status
 from ..cases.case import Case
-from ..cases.scenefile import INPUTS, SOURCE
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import (
@@ -71,13 +70,13 @@ class Row:
     name, meaning, unit : str
         Of the quantity (`impact88.names`); the unit is "" for ratios and without named units.
     text : str
-        A result as every reader sees it, without its unit; an entry as written.
+        A result as every reader sees it, without its unit.
     note : str
-        A result in other words, "10 o'clock"; the source of an entry.
+        The same in other words, "10 o'clock".
     interval : str
         The 90 % interval as every reader sees it, "28.1 .. 31.5"; "" for an exact number.
     value : float or None
-        A result, not rounded; None for an entry, and where only an interval is known.
+        A result, not rounded; None where only an interval is known.
     ends : tuple of float or None
         The ends of the interval, not rounded.
     """
@@ -102,8 +101,6 @@ class Answer:
         The question that the case leaves open.
     question : str
         The same in words: "SA and SB, from 10 exact values".
-    given : tuple of Row
-        The entries, in the order of the file.
     found : mapping of str to Row
         Results by name, the most asked first; empty where known values contradict one another.
     case : Case
@@ -127,7 +124,6 @@ class Answer:
 
     asked: str
     question: str
-    given: tuple[Row, ...]
     found: Mapping[str, Row]
     case: Case = field(repr=False)
     evidence: str = ""
@@ -139,12 +135,17 @@ class Answer:
     alternatives: tuple[Answer, ...] = ()
 
     @property
+    def given(self) -> Mapping[str, str]:
+        """The entries as written, units and sources among them, in the order of the file."""
+        return self.case.written
+
+    @property
     def intervals(self) -> dict[str, tuple[float, float]]:
         """The 90 % intervals of the results that have one."""
         return {name: row.ends for name, row in self.found.items() if row.ends}
 
     def as_json(self) -> dict[str, Any]:
-        """Return the answer as an object for JSON, with a `Row` for each entry and result."""
+        """Return the answer as an object for JSON, with a `Row` for each result."""
         names = "asked question evidence possible given remarks warnings".split()
         return {
             **{name: getattr(self, name) for name in names},
@@ -213,7 +214,6 @@ def forward_answer(
     return Answer(
         "forward",
         question,
-        given_of(case),
         numbers_of(case, values),
         case,
         possible=not bits & status.IMPOSSIBLE,
@@ -296,18 +296,6 @@ def _dependences(variances: Mapping[str, Mapping[str, float]]) -> tuple[str, ...
         words = ", ".join(f"{name} {100 * parts[name] / total:.0f} %" for name in inputs)
         results.setdefault(words, []).append(result)
     return tuple(f"{' '.join(names)}: {words}" for words, names in results.items() if words)
-
-
-def given_of(case: Case) -> tuple[Row, ...]:
-    """Return the entries of a case, in the order of its file."""
-    rows = []
-    for name, entry in case.written.items():
-        if name in INPUTS:
-            has_unit = any(map(str.isalpha, entry))
-            unit = "" if has_unit else unit_of(case, name)
-            source = case.written.get(name + SOURCE, "")
-            rows.append(Row(name, case.view.meaning(name), unit, entry, source))
-    return tuple(rows)
 
 
 def unit_of(case: Case, name: str) -> str:
@@ -423,7 +411,6 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
     return Answer(
         "reconstruct",
         words.question(impact, case.derived),
-        given_of(case),
         numbers_of(case, {n: values.get(n, math.nan) for n in results}, impact.intervals),
         case,
         evidence=words.evidence(impact, view),

@@ -22,8 +22,6 @@ from .pages import render
 if TYPE_CHECKING:
     from .exhibits import Exhibit
 
-ENDINGS = (".html", ".svg", ".png")
-"""Endings of the files that `write` writes."""
 IMPACT = (
     "Planar impact of two rigid bodies: impulse and momentum at the moment of contact, with "
     "coefficients of restitution e, of friction μ and of moment restitution e_m (R. M. Brach, "
@@ -97,15 +95,13 @@ def case_page(answer: Answer) -> str:
         If jinja2 is not installed.
     """
     case = answer.case
-    drawing, undrawn = drawing_of(answer)
     return _render(
         "case.html",
         title=case.title or "Planar impact of two vehicles",
         case=case,
         paper="a4" if case.view.units in ("metric", "si") else "letter",
         answer=answer,
-        drawing=drawing,
-        undrawn=undrawn,
+        drawing=drawing_of(answer),
         exact=[n for n in case.entries if n not in (*case.ranges, *case.derived, "M")],
         method=(IMPACT, METHODS[answer.asked]),
         not_judged=NOT_JUDGED,
@@ -164,12 +160,13 @@ def write(answer: Answer, path: str) -> None:
         be written to.
     """
     ending = PurePath(path).suffix.lower()
-    if ending not in ENDINGS:
-        raise UserError("expected -o FILE.html, FILE.svg or FILE.png")
     if ending == ".html":
         data = case_page(answer).encode()
+    elif ending == ".svg":
+        data = draw(answer).encode()
+    elif ending == ".png":
+        data = to_png(draw(answer))
     else:
-        svg = draw(answer)
-        data = to_png(svg) if ending == ".png" else svg.encode()
+        raise UserError("expected -o FILE.html, FILE.svg or FILE.png")
     with replacing(path, "wb") as file:
         file.write(data)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from ..cases.scenefile import INPUTS
 from ..errors import library, printable
 from ..printouts import words
 
@@ -24,7 +25,7 @@ def environment() -> Environment:
         undefined=jinja2.StrictUndefined,
     )
     templates.filters["printable"] = _displayed_text
-    templates.globals["words"] = words
+    templates.globals.update(words=words, inputs=INPUTS)
     return templates
 
 

@@ -11,7 +11,6 @@ from typing import Any
 
 from flask import Flask, Response, abort, render_template, request
 from jinja2 import ChoiceLoader, PackageLoader
-from werkzeug.exceptions import InternalServerError
 
 from ..cases import TEMPLATES, Case, View
 from ..cases.scenefile import ABOUT, INPUTS, read_toml
@@ -40,7 +39,7 @@ def application(port: int, token: str) -> Flask:
     reports = environment()
     loader = ChoiceLoader([PackageLoader(__package__), reports.loader])  # type: ignore[list-item]
     app.jinja_env = reports.overlay(loader=loader)  # type: ignore[assignment]
-    context = {"root": f"/{token}", "inputs": INPUTS, "kinds": TEMPLATES, "headings": HEADINGS}
+    context = {"root": f"/{token}", "kinds": TEMPLATES, "headings": HEADINGS}
     app.context_processor(lambda: context)
 
     @app.before_request
@@ -54,8 +53,7 @@ def application(port: int, token: str) -> Flask:
         response.headers.update(HEADERS)
         return response
 
-    app.register_error_handler(UserError, lambda error: _problem(str(error), 422))
-    app.register_error_handler(500, _internal_error)
+    app.register_error_handler(UserError, _problem)
     for path, page in {"": printout, "collision": collision, "1988": program}.items():
         app.get(f"/{token}/{path}")(page)
     for reply in (verify, verification, fields, answer, report, scene, printed):
@@ -63,14 +61,9 @@ def application(port: int, token: str) -> Flask:
     return app
 
 
-def _problem(message: str, status: int) -> tuple[str, int]:
-    """Return the message on bad input, or on an error of this program."""
-    return _show("problem.html", message=message), status
-
-
-def _internal_error(error: InternalServerError) -> tuple[str, int]:
-    """Return the message on an error of this program, whose place Flask prints on stderr."""
-    return _problem(f"internal error; please report it: {error.original_exception!r}", 500)
+def _problem(error: UserError) -> tuple[str, int]:
+    """Return the message on bad input. Flask answers and logs errors of this program itself."""
+    return _show("problem.html", message=str(error)), 422
 
 
 def _show(part: str, whole: str = "layout.html", **context: Any) -> str:
@@ -152,7 +145,6 @@ def fields() -> str:
     if upload:
         source, data = upload
         texts, _ = read_toml(decode(data, source), source)
-        Case.of(texts, source)
         entries = [entry for entry in texts.items() if entry[1] != "0"]
         # the kind that has most of its names, and of its entries but zeros
         kinds = {name: {*kind.entries, *kind.entries.items()} for name, kind in TEMPLATES.items()}
@@ -173,8 +165,7 @@ def answer() -> str:
     """Return the answer to a form, with its drawing."""
     case = _case()
     result = answer_in_time(lambda: ask(case))
-    drawing, undrawn = drawing_of(result)
-    return _show("answer.html", answer=result, drawing=drawing, undrawn=undrawn)
+    return _show("answer.html", answer=result, drawing=drawing_of(result))
 
 
 def report() -> Response:

@@ -45,11 +45,11 @@ def refusal(
     token : str
         The first part of every path.
     """
-    hosts = [f"127.0.0.1:{port}", f"localhost:{port}"]
-    if headers.get("Host") not in hosts:
+    host = f"127.0.0.1:{port}"
+    if headers.get("Host") != host:
         return 403
     first = path.lstrip("/").partition("/")[0]
     if not hmac.compare_digest(first.encode("utf-8", "replace"), token.encode()):
         return 404
-    origin = headers.get("Origin", f"http://{hosts[0]}" if method in ("GET", "HEAD") else "")
-    return None if origin in [f"http://{host}" for host in hosts] else 403
+    own = f"http://{host}"
+    return None if headers.get("Origin", own if method in ("GET", "HEAD") else "") == own else 403
