@@ -20,9 +20,9 @@ def show_answer(answer: Answer, is_json: bool) -> int:
 def answer_lines(answer: Answer) -> Iterator[str]:
     """Yield the lines of an answer: the question, what was found, how sure it is, remarks."""
     impacts = [answer, *answer.alternatives]
-    yield from paragraph(answer.question, "ASKED", LABEL)
-    if answer.evidence:
-        yield from paragraph(answer.evidence, "EVIDENCE", LABEL)
+    for label, text in (("ASKED", answer.question), ("EVIDENCE", answer.evidence)):
+        if text:
+            yield from paragraph(text, label, LABEL)
     yield ""
     for number, impact in enumerate(impacts, 1):
         if len(impacts) > 1:

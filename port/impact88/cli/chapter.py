@@ -15,7 +15,7 @@ exit status: 0 done; 1 a printed number that nothing explains, or an impact that
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
@@ -77,11 +77,8 @@ def _collision_tables(args: options.Args) -> int:
         "comparison": cells,
         "validation": [check._asdict() for check in validation.checks()],
     }
-    if args.table:
-        lines: Iterable[str] = words.table_lines(int(args.table))
-    else:
-        lines = words.validation_lines() if args.validation else words.comparison_lines()
-    show(args.json, "chapter", record, lines)
+    lines = words.validation_lines() if args.validation else words.comparison_lines()
+    show(args.json, "chapter", record, words.table_lines(int(args.table)) if args.table else lines)
     return int(any(cell.explanation == "not explained" for cell in cells))
 
 

@@ -15,16 +15,15 @@ exit status: 0 every result agrees; 1 something disagrees or was not compared; 2
 from __future__ import annotations
 
 from . import options
-from .options import flag, option
+from .options import option
 from .output import show
 
 OPTIONS = (
     option("theirs", type=options.InputPath, metavar="TABLE", help="their results"),
     options.texts("--set", "NAME=VALUE", "a value of all rows"),
     options.UNITS,
-    flag("--no-causes", "look for no mistakes"),
     option("--kit", metavar="ID", help="judge answers to this kit: 1988.1"),
-    options.output_file("--junit", "FILE", "write a JUnit report"),
+    option("--junit", type=options.OutputPath, metavar="FILE", help="write a JUnit report"),
     options.JSON,
     options.OUTPUT,
 )
@@ -40,7 +39,6 @@ def main(args: options.Args) -> int:
         kit=args.kit,
         values=options.changes_of(args),
         units=args.units,
-        causes=not args.no_causes,
     )
     if args.junit:
         with options.printing_to(args.junit):

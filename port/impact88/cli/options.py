@@ -56,11 +56,6 @@ def input_file(name: str, metavar: str, meaning: str) -> Option:
     return option(name, type=InputPath, metavar=metavar, help=meaning)
 
 
-def output_file(name: str, metavar: str, meaning: str) -> Option:
-    """Return an option that takes a file to write."""
-    return option(name, type=OutputPath, metavar=metavar, help=meaning)
-
-
 FILE = option(
     "file", nargs="?", type=InputPath, metavar="FILE", help="the collision; - is standard input"
 )

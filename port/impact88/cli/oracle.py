@@ -47,8 +47,8 @@ def main(args: Args) -> int:
         lines = (line.decode("utf-8-sig", "replace") for line in file)
         for answer in answer_lines(lines):
             failures += "error" in answer
-            answers += "error" not in answer
+            answers += 1
             print(to_json(answer), flush=True)  # a program may ask line by line
-    if not answers:
+    if answers == failures:
         raise UserError('no line can be used; expected lines such as {"id": 1, "scene": {...}}')
     return int(failures > 0)

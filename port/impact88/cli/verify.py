@@ -44,7 +44,9 @@ OPTIONS = (
     flag("--brief", "verdicts and findings alone"),
     input_file("--scene", "FILE.toml", "the inputs, for a page with results only"),
     input_file("--listing", "FILE.bas", "the office's own copy of the listing"),
-    options.output_file("--report", "FILE.html", "write a page for the case"),
+    option(
+        "--report", type=options.OutputPath, metavar="FILE.html", help="write a page for the case"
+    ),
     *(option(f"--{name}", default="", help="heading of that page") for name in HEADINGS),
     options.JSON,
     options.OUTPUT,
