@@ -77,6 +77,12 @@ def test_altered_digit_differs_at_its_place() -> None:
     assert page.uri.startswith("data:image/png;base64,")
 
 
+def test_digit_added_before_a_bracket_is_open() -> None:
+    altered = PAGE.replace("15.91)", "15.918)")
+    assert altered != PAGE
+    assert read(scan(draw(altered, 0))).verdict is Verdict.INCOMPLETE
+
+
 def test_erased_digit_is_open() -> None:
     top, left = corner("263 VAY")
     page = draw(PAGE, 0)

@@ -24,7 +24,6 @@ MIN_LINES = 6  # lines of type of a page
 WIDEST = 1.1  # widest pitch, in heights of a line; pages have 0.6 to 0.97
 MAX_COLUMNS = 200  # pitches across a page: two printouts side by side have 180; bounds memory
 CELL_HEIGHT = 1.7  # height of a cell, in heights of a line
-PIECE = 12  # length of the piece of a line whose gaps and height are measured at once, cells
 
 
 @dataclass(frozen=True)
@@ -92,8 +91,7 @@ class Grid:
         for _ in range(5):  # the bend is a function of x and y
             x = u - np.tensordot(self.bend, _terms(x, y, span), 1)
             y = v + x * (slope + keystone * y / span)
-        t = (u - self.origin) / self.pitch / PIECE
-        y = y + np.tensordot(self.rise, _bows(t, v / self.pitch / PIECE), 1)
+        y = y + np.tensordot(self.rise, _bows((u - self.origin) / span, v / span), 1)
         return x + self.size[1] / 2, y + self.size[0] / 2
 
     def strip(self, line: int) -> Image:
@@ -215,7 +213,7 @@ def grid_of(ink: Image, points: Points) -> Grid | None:
     origin = float((np.floor(inked.min() / pitch) - 1) * pitch)
     scale = CELL_WIDTH / pitch
     middles = np.array([(top + foot) / 2 for top, foot in lines])
-    rise, drifts = _fit_rise(across - origin, level, middles, height, scale)
+    rise, drifts = _fit_rise(across - origin, level, middles, height, scale, span)
     middles = _distinct(middles + drifts, [len(inked) for inked in members], height)
     return Grid(
         ink=resize(ink, scale),
@@ -274,7 +272,9 @@ def _pitch(xs: list[Floats], height: float, span: float) -> float:
     power spectrum."""
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
-    power = np.sum([np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum() for gap in gaps], axis=0)
+    power = np.zeros(size // 2 + 1)
+    for gap in gaps:
+        power += np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum()
     last = int(2 * WIDEST * height)
     first = max(last // 2, int(2 * span / MAX_COLUMNS), 2)  # an octave, so that it is no harmonic
     chosen = np.arange(size // last, size // first + 1)
@@ -302,7 +302,7 @@ class _Phasors(NamedTuple):
 def _phasors(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> _Phasors:
     """Return the phasors of the gaps in lines with inked places ``xs``, ``ys``."""
     sums, places = [], []
-    width = PIECE * pitch
+    width = span / 8  # of pieces: half as wide or twice give the same bend
     for x, y in zip(xs, ys, strict=True):
         gaps = _gaps(x, pitch)
         piece = np.floor(gaps / width).astype(int)
@@ -372,12 +372,12 @@ def _search_bend(phasors: _Phasors, slope: float, pitch: float, span: float) -> 
 
 
 def _bows(u: Floats, v: Floats) -> Floats:
-    """Return the terms u, uv, u², u²v (a tenth of each) of the rise of lines."""
-    return np.stack([u, u * v, u * u, u * u * v]) / 10
+    """Return the terms u, uv, u², u²v of the rise of lines, u and v in units of the span."""
+    return np.stack([u, u * v, u * u, u * u * v])
 
 
 def _fit_rise(
-    across: Floats, level: Floats, middles: Floats, height: float, scale: float
+    across: Floats, level: Floats, middles: Floats, height: float, scale: float, span: float
 ) -> tuple[Floats, Floats]:
     """Return how lines still rise after levelling, in pixels: the coefficients of `_bows`, and a
     constant for each line.
@@ -387,18 +387,18 @@ def _fit_rise(
     """
     reach = 9  # largest shift tried, resampled pixels
     half = int(0.85 * height * scale) + reach
-    width = PIECE * CELL_WIDTH
-    stretches = np.maximum((across * scale / width).astype(int), 0)
+    count = 8  # stretches across the page
+    stretches = np.clip((across / span * count).astype(int), 0, count)
     profiles, places = [], []
     for line, middle in enumerate(middles):
         down = np.floor((level - middle) * scale).astype(int) + half
         is_near = (down >= 0) & (down < 2 * half)
-        counts = np.zeros((stretches.max() + 1, 2 * half))
+        counts = np.zeros((count + 1, 2 * half))
         np.add.at(counts, (stretches[is_near], down[is_near]), 1.0)
         counts = ndimage.uniform_filter1d(counts, 3, axis=1)
         for stretch in np.flatnonzero(counts[:, reach:-reach].sum(axis=1) > 40):
             profiles.append(counts[stretch] / np.linalg.norm(counts[stretch]))
-            places.append((line, stretch + 0.5, middle * scale / width))
+            places.append((line, (stretch + 0.5) / count, middle / span))
     if not profiles:
         return np.zeros(4), np.zeros(len(middles))
     rows, at = np.array(profiles), np.array(places)

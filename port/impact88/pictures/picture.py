@@ -172,12 +172,18 @@ def ink_of(grey: Image) -> Image:
     around = np.asarray(
         PIL.Image.fromarray(paper).resize((columns, rows), PIL.Image.Resampling.BILINEAR)
     )
-    ink = np.maximum(1 - grey / np.maximum(around, SHADOW * paper.max()), 0)
-    ink[around < SHADOW * paper.max()] = 0
+    darkest = SHADOW * paper.max()
+    ink: Image = grey / np.maximum(around, darkest)
+    np.clip(1 - ink, 0, None, out=ink)
+    ink[around < darkest] = 0
     # the paper was closed over its own grain, and is found too light
-    ink = np.maximum(ink - np.percentile(ink, PAPER), 0)
-    full = float(np.sum(ink**4) / max(np.sum(ink**3), 1e-9))
-    return np.asarray(np.clip(ink / max(full, 1e-9), 0, 1.5), np.float32)
+    ink -= np.percentile(ink, PAPER)
+    np.clip(ink, 0, None, out=ink)
+    cubes = ink**3
+    ink *= cubes.sum() / max(np.vdot(cubes, ink), 1e-9)
+    del cubes  # pages are large
+    np.clip(ink, 0, 1.5, out=ink)
+    return ink
 
 
 class Points(NamedTuple):
@@ -200,6 +206,7 @@ def points_of(ink: Image) -> Points:
     """
     around = ndimage.uniform_filter(ink, 3)
     dark = (ink > DARK) & (around > DARK / 2)
+    del around
     labels, _ = ndimage.label(dark[::2, ::2], np.ones((3, 3)))
     rows, columns = (length / 2 for length in ink.shape)
     for number, box in enumerate(ndimage.find_objects(labels), 1):
@@ -209,12 +216,11 @@ def points_of(ink: Image) -> Points:
             top, left = 2 * box[0].start, 2 * box[1].start
             window = dark[top : top + part.shape[0], left : left + part.shape[1]]
             window &= ~part[: window.shape[0], : window.shape[1]]
-    y, x = np.nonzero(dark)
+    places = np.flatnonzero(dark)
     # a fixed stride would fall into step with the rows, whole pixels with the pitch
     random = np.random.default_rng(1988)
-    if len(x) > 150_000:
-        chosen = random.choice(len(x), 150_000, replace=False)
-        y, x = y[chosen], x[chosen]
-    across, down = np.array([x, y]) + random.random((2, len(x)))
+    if len(places) > 150_000:
+        places = random.choice(places, 150_000, replace=False)
     height, width = ink.shape
+    down, across = np.divmod(places, width) + random.random((2, len(places)))[::-1]
     return Points(across - width / 2, down - height / 2, float(max(ink.shape)))

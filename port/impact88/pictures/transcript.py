@@ -79,11 +79,13 @@ class Cell(NamedTuple):
     def state(self) -> str:
         """``holds``, ``differs`` or ``doubt``.
 
-        A cell without ink never differs: dropped ink looks like erasure.
+        A cell without ink never differs: dropped ink looks like erasure. Nor does one of a label's
+        character that is there once or twice: what is unlike may be the mean.
         """
         if self.margin < (DIFFERS if self.predicted == BLANK else HOLDS):
             return "holds" if self.distance < MAX_FOREIGN else "doubt"
         is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
+        is_known &= self.members >= MIN_MEMBERS or self.predicted in IN_NUMBERS
         return "differs" if self.margin > DIFFERS and is_known else "doubt"
 
 
@@ -381,7 +383,8 @@ class Reader:
             if column not in names or text[column] == REPLY:
                 continue
             self.predicted[placed.cells[at]] = text[column]
-            self.fields[placed.cells[at]] = names[column]
+            # a digit added to a number is where the bracket after it was
+            self.fields[placed.cells[at]] = names[column] or names.get(column - 1, "")
             for step in (-1, 1):
                 if not 0 <= at + step < len(sources) or sources[at + step] in names:
                     continue
