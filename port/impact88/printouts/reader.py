@@ -102,8 +102,6 @@ class Reading:
         The text in the place of each number, and of the two replies.
     chars : dict of int to Glyph
         The glyph of each cell of a word.
-    other_labels : dict of int to list of Glyph
-        The glyphs of another label in a label's place, by its first cell.
     foreign : list of lists of Glyph
         What belongs to no cell.
     replies : dict of str to str
@@ -119,7 +117,6 @@ class Reading:
     text: str
     slots: dict[str, Slot] = field(default_factory=dict)
     chars: dict[int, Glyph] = field(default_factory=dict)
-    other_labels: dict[int, Sequence[Glyph]] = field(default_factory=dict)
     foreign: list[list[Glyph]] = field(default_factory=list)
     replies: dict[str, str] = field(default_factory=dict)
     repeated: list[tuple[str, Slot]] = field(default_factory=list)
@@ -269,12 +266,8 @@ class _Reader:
             *cells, last = range(anchor.label.start, anchor.label.stop)
             self.reading.chars |= dict(zip(cells, glyphs[:-1], strict=False))
             self.reading.chars[last] = glyphs[-1]
-            words = [c for c in CELLS[: anchor.label.stop] if c.name == anchor.label.name]
-            letters = iter("".join(cell.char for cell in words))
-            is_rest = all(char in letters for char in anchor.read)  # of a label that lost letters
-            is_whole = glyphs[0].gap > 0 or self.glyphs[anchor.start - 1].char == "("
-            if is_whole and not is_rest:
-                self.reading.other_labels[anchor.label.start] = glyphs[:-1]
+            if further := glyphs[len(cells) : -1]:  # of a longer label in its place
+                self.reading.foreign.append(further)
 
     def _read_between(
         self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]

@@ -24,6 +24,7 @@ from .page import (
     PROMPTS,
     REPLIES,
     ROW_OF,
+    ROWS,
     SLOT_CELLS,
     TITLES,
     print_page,
@@ -41,6 +42,8 @@ MAX_FOREIGN_DIGITS = 6
 """Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
 MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
+WORDS = {*re.findall("[A-Z]+", re.sub("{.*?}", "", " ".join(ROWS)))}
+"""The words of the page's labels."""
 HALF_TURNS = (-360, -180, 180, 360)
 """Degrees after which the axes of the crush plane are the same, or both turned."""
 
@@ -151,14 +154,10 @@ def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
 
 @dataclass
 class Word:
-    """A word or mark of the page: its cells, and the glyphs that were read for them.
-
-    ``is_other``: they are another label of the page, read exactly.
-    """
+    """A word or mark of the page: its cells, and the glyphs that were read for them."""
 
     cells: list[int] = field(default_factory=list)
     glyphs: list[Glyph] = field(default_factory=list)
-    is_other: bool = False
 
     @property
     def printed(self) -> str:
@@ -254,8 +253,7 @@ class Comparison:
         foreign = [*self.reading.foreign]
         for word in self.words:
             if word.read != word.printed:
-                is_label = word.is_other and not self.reading.is_machine_read
-                kind = Kind.LABEL if is_label else Kind.MISREAD if word.read else Kind.LOST
+                kind = Kind.MISREAD if word.read else Kind.LOST
                 cell = word.cells[0]
                 for run in [run for run in foreign if _touches(run, word.glyphs)]:
                     word.glyphs = sorted([*word.glyphs, *run], key=lambda glyph: glyph.offset)
@@ -331,9 +329,7 @@ class Comparison:
                 words.append(Word())
             word = words[-1]
             word.cells.append(j)
-            if label := self.reading.other_labels.get(j):
-                word.glyphs, word.is_other = [*label], True
-            elif j in self.reading.chars and not word.is_other:
+            if j in self.reading.chars:
                 word.glyphs.append(self.reading.chars[j])
         lost = {row for row, words in by_row.items() if not any(word.glyphs for word in words)}
         read = [word for row, words in by_row.items() if row not in lost for word in words]
@@ -346,27 +342,20 @@ class Comparison:
 
         A number that was printed once more, cleanly as another, counts if all of its row was.
         """
-        by_row: dict[int, list[Finding]] = {}
-        for name, slot in self.reading.repeated:
-            finding = self.finding(
-                Kind.TWICE, name, slot.glyphs, self.fields.get(name, ""), SLOT_CELLS[name]
-            )
-            is_sure = finding.printed and slot.is_clean and slot.is_bounded
-            if is_sure and as_printed(slot.text) != finding.printed:
-                finding = finding._replace(kind=Kind.NUMBER)
-            by_row.setdefault(CELLS[SLOT_CELLS[name]].row, []).append(finding)
-        rows = {row: {name for name in NAMES if ROW_OF[name] == row} for row in by_row}
-        full_rows = [
-            row for row in by_row if rows[row] <= {finding.name for finding in by_row[row]}
-        ]
+        names = {name for name, _ in self.reading.repeated}
+        rows = {ROW_OF[name] for name in names}
+        full_rows = rows - {ROW_OF[name] for name in NAMES if name not in names}
         for row, glyph in self.reading.disorder:
             kind = Kind.ROW_TWICE if row in full_rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
-        for row, doubles in by_row.items():
-            if row not in full_rows:
-                yield from (finding._replace(kind=Kind.TWICE) for finding in doubles)
-            elif Kind.NUMBER in {finding.kind for finding in doubles}:
-                yield from doubles
+        for name, slot in self.reading.repeated:
+            printed = self.fields.get(name, "")
+            is_sure = printed and slot.is_clean and slot.is_bounded
+            is_other = is_sure and as_printed(slot.text) != printed
+            if ROW_OF[name] not in full_rows:
+                yield self.finding(Kind.TWICE, name, slot.glyphs, printed, 0)
+            elif is_other:
+                yield self.finding(Kind.NUMBER, name, slot.glyphs, printed, 0)
 
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
@@ -407,15 +396,21 @@ def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
 
 
 def _is_other_word(finding: Finding) -> bool:
-    """Return True for another word than a label's, not one that lost letters or was misread."""
+    """Return True for another word than a label's, not one that lost letters or was misread.
+
+    Another label of the page is one; else a single letter may be a misprint. What the Apple cannot
+    print was not read exactly.
+    """
     read, printed = finding.read.upper(), finding.printed
+    same = _count_same(read, printed)
+    if read in WORDS:
+        return same < len(read)
     if len(read) == len(printed):
         pairs = zip(printed, read, strict=True)
         read = "".join(a if b in LOOKALIKES.get(a, "") else b for a, b in pairs)
     same = _count_same(read, printed)
-    return (
-        max(len(read), len(printed)) - same >= MIN_LETTERS and read.isalpha() and same < len(read)
-    )
+    is_word = read.isascii() and read.isalpha() and same < len(read)
+    return is_word and max(len(read), len(printed)) - same >= MIN_LETTERS
 
 
 def _is_unsure(finding: Finding) -> bool:
