@@ -8,16 +8,13 @@ WRONG = 1.0
 """A character for another: the unit."""
 ALIKE = 0.3
 """A character for one that looks like it."""
-RESPELLED = 0.1
-"""A number written otherwise than Applesoft prints it: zeros added, digits moved."""
+SLIGHT = 0.03
+"""What decides between equals: a number written otherwise than Applesoft prints it, a label of the
+page passed over between two that were read, a less likely spelling."""
 LOST = 0.6
 """A printed character, or a result, that is not in the text."""
 FOREIGN = 0.5
 """A character, or a blank within a word or number, that the program does not print there."""
-BACKWARD = 1.0
-"""A label further up the page than the one before it."""
-PASSED = 0.03
-"""A label of the page passed over between two that were read."""
 OTHER_LABEL = 0.9
 """A label in the place of another that does not look like it: less than a step back."""
 CONTRADICTED = 3.0

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .costs import ALIKE, BACKWARD, FOREIGN, OTHER_LABEL, PASSED
+from .costs import ALIKE, FOREIGN, OTHER_LABEL, SLIGHT, WRONG
 from .glyphs import LINE_GAP, LOOKALIKES, WIDE_GAP, Glyph, chars_of, split_at_gaps
 from .page import ASTERISKS, CELLS, ROWS
 
@@ -72,7 +72,7 @@ CLOSED = re.compile(r"[-+.E0-9]{1,14}\)")
 """The number of a label in brackets."""
 WORDS = re.compile("[A-Z]{3}")
 _BACK = -np.subtract.outer(np.arange(len(LABELS)), np.arange(len(LABELS)))
-_STEPS = np.where(_BACK > 0, PASSED * (_BACK - 1), BACKWARD - PASSED * _BACK + ALIKE * (_BACK == 0))
+_STEPS = np.where(_BACK > 0, SLIGHT * (_BACK - 1), WRONG - SLIGHT * _BACK + ALIKE * (_BACK == 0))
 """Cost of each label (column) behind each other (row)."""
 
 
@@ -111,7 +111,7 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     for line in split_at_gaps(glyphs, LINE_GAP):
         stop = start + len(line)
         further = [label for label in labels if not start <= label[1] < stop]
-        if is_note(line) and _order(glyphs, further)[0] < _order(glyphs, labels)[0] - BACKWARD / 2:
+        if is_note(line) and _order(glyphs, further)[0] < _order(glyphs, labels)[0] - WRONG / 2:
             labels = further
         start = stop
     return _order(glyphs, labels)[1]
@@ -124,7 +124,7 @@ def _order(
 
     A label that two rows have is that of the row in order; one in another's place is that one.
     """
-    costs = PASSED * np.arange(len(LABELS))
+    costs = SLIGHT * np.arange(len(LABELS))
     ways = []
     sums = costs
     chars = chars_of(glyphs)

@@ -10,7 +10,7 @@ from itertools import product
 from ..apple.applesoft import decimaltext
 from ..apple.applesoft.errorcodes import ApplesoftError
 from ..apple.applesoft.real import divide, multiply, rounded, to_stored
-from .costs import ALIKE, RESPELLED, WRONG
+from .costs import ALIKE, SLIGHT, WRONG
 from .glyphs import LOOKALIKES
 
 PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0-9]{1,2})?")
@@ -116,12 +116,12 @@ def readings(chars: str) -> dict[str, float]:
     Characters of numbers are themselves, others are look-alikes of some or dirt; "?" is any digit.
     """
     if PRINTED.fullmatch(number := as_printed(chars)):
-        return {number: RESPELLED * (number != chars)}
+        return {number: SLIGHT * (number != chars)}
     ways: list[tuple[str, float]] = [("", 0.0)]
     for char in chars:
         options = [(char, 0.0)] if char in "0123456789.-E" else []
         if char == "+":
-            options = [("", RESPELLED), ("+", RESPELLED)]
+            options = [("", SLIGHT), ("+", SLIGHT)]
         elif not options or char == "E":
             is_mark = not char.isalnum()  # rather a point or sign than a digit or dirt
             for digit in NUMBER_CHARS:
@@ -140,7 +140,7 @@ def readings(chars: str) -> dict[str, float]:
     for text, cost in ways:
         number = as_printed(text)
         if PRINTED.fullmatch(number):
-            texts.setdefault(number, cost + RESPELLED * (number != text))
+            texts.setdefault(number, cost + SLIGHT * (number != text))
     return texts
 
 
@@ -153,11 +153,11 @@ def slips(text: str) -> list[tuple[str, float]]:
     costs: dict[str, float] = {}
     for k in range(len(text) + 1):
         before, char, behind = text[:k], text[k : k + 1], text[k + 1 :]
-        variants = [(before + new + char + behind, WRONG + RESPELLED) for new in NUMBER_CHARS]
+        variants = [(before + new + char + behind, WRONG + SLIGHT) for new in NUMBER_CHARS]
         if char:
             variants += [(before + new + behind, WRONG) for new in NUMBER_CHARS]
-            variants.append((before + behind, WRONG + RESPELLED))
-            variants.append((before + behind[:1] + char + behind[1:], WRONG + RESPELLED))
+            variants.append((before + behind, WRONG + SLIGHT))
+            variants.append((before + behind[:1] + char + behind[1:], WRONG + SLIGHT))
         for variant, cost in variants:
             if PRINTED.fullmatch(variant) and as_printed(variant) == variant != text:
                 costs.setdefault(variant, cost)

@@ -13,16 +13,15 @@ from numpy.typing import NDArray
 from ..program.copies import ListingCopy
 from ..program.replay import replay
 from ..program.scene import sample
-from .numerals import PRINTED, spellings
+from .numerals import spellings
 from .page import ANGLES, INPUTS, NAMES
 from .reader import ENDING, Reading, read_printouts
 
 ZERO_DETERMINANT = "ZERO DETERMINANT"
-CONVERTED = 1e-3
-"""Relative difference from which a copy prints another number than was typed: a copy with another
-pi changes last places only."""
-MAX_DIGITS = 9
 PROBE = "10"
+"""A number that copies are given for every input, to see which they convert."""
+CONVERTED = 1e-2
+"""Difference from which a copy prints another number: one with another pi changes last places."""
 Columns = Mapping[str, Sequence[str]]
 
 
@@ -116,30 +115,16 @@ class CopyListing(Listing):
         return layouts
 
     @cached_property
-    def _factors(self) -> dict[str, float]:
-        """Factor by which the copy converts each input before it prints it."""
-        scene = {**dict.fromkeys(sample(1), PROBE), "M": "6"}
-        texts = _texts(self.copy.pages(scene)[0])
-        numbers = {name: text for name, text in texts.items() if PRINTED.fullmatch(text)}
-        factors = {n: float(numbers[n]) / float(PROBE) for n in INPUTS if n in numbers}
-        return {name: f for name, f in factors.items() if f and abs(abs(f) - 1) > CONVERTED}
+    def _converted(self) -> set[str]:
+        """Inputs of which the copy prints another number than was typed."""
+        page = self.run({**dict.fromkeys(sample(1), PROBE), "M": "6"}).texts(0)
+        numbers = {name: abs(float(page[name])) for name in INPUTS if name in page}
+        return {name for name, number in numbers.items() if abs(number - float(PROBE)) > CONVERTED}
 
     def spellings(self, name: str, printed: str) -> tuple[str, ...]:
-        """Return texts that may have been typed for a printed input, the shortest first."""
-        if name not in self._factors:
-            return super().spellings(name, printed)
-        number = float(printed) / self._factors[name]
-        texts = [f"{float(f'{number:.{k}g}'):.{MAX_DIGITS}G}" for k in range(1, MAX_DIGITS + 1)]
-        scene = {key: [text] * len(texts) for key, text in sample(1).items()}
-        same = self.run({**scene, name: texts}).printed(name) == printed.encode()
-        return tuple(text for text, is_same in zip(texts, same, strict=True) if is_same)
+        """Return texts that may have been typed for a printed input, none if it was converted."""
+        return () if name in self._converted else super().spellings(name, printed)
 
     def layout(self, scene: Mapping[str, str]) -> Reading | None:
         """Return what is read of the copy's own page."""
         return next(iter(read_printouts(self.copy.pages(scene)[0])), None)
-
-
-def _texts(page: str) -> dict[str, str]:
-    """Return the numbers of a page by name."""
-    readings = read_printouts(page)
-    return {name: slot.text for reading in readings[:1] for name, slot in reading.slots.items()}

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .costs import ALIKE, CONTRADICTED, LOST, PASSED, RESPELLED, WRONG
+from .costs import ALIKE, CONTRADICTED, LOST, SLIGHT, WRONG
 from .numerals import MAX_DIGITS, TYPED, opposite, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
@@ -142,7 +142,7 @@ def _options(
         entries = [reply] if entry and entry[1] == text else program.spellings(name, text)
         if name == "MUP" and entries:  # -10 printed of a typed 10 is no pivot
             entries = [*entries, opposite(entries[0])]
-        options += [Option(name, text, typed, cost + PASSED * k) for k, typed in enumerate(entries)]
+        options += [Option(name, text, typed, cost + SLIGHT * k) for k, typed in enumerate(entries)]
     return options
 
 
@@ -275,7 +275,7 @@ class _Search:
         scenes.sort(key=lambda other: other.cost)
         by_input: dict[str, Recovered] = {}
         for other in scenes:
-            if other.cost <= scenes[0].cost + RESPELLED:
+            if other.cost <= scenes[0].cost + 2 * SLIGHT:
                 by_input.setdefault(other.changed, other)
         return [*by_input.values()]
 
