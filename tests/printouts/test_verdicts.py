@@ -277,6 +277,13 @@ def test_another_word_differs_where_all_else_is_read_exactly(old: str, new: str,
     assert single(text.replace("DA=", "0A=")).verdict is Verdict.AS_READ
 
 
+def test_a_word_that_the_apple_cannot_print_is_a_doubt() -> None:
+    for word, verdict in (("FX", Verdict.DIFFERS), ("µ", Verdict.AS_READ), ("ΜЦ", Verdict.AS_READ)):
+        verification = single(PAGE.replace("MU=", f"{word}="))
+        assert verification.verdict is verdict
+        assert word.upper() in {finding.read.upper() for finding in verification.findings}
+
+
 @pytest.mark.parametrize("word", ["INITAL", "INITXAL", "INITLAL", "lNlTlAL", "NITIAL"])
 def test_a_misprinted_label_is_listed_by_word(word: str) -> None:
     verification = single(PAGE.replace("INITIAL KE", f"{word} KE"))

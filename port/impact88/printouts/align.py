@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .costs import ALIKE, FOREIGN, LOST, WRONG
+from .costs import ALIKE, UNPAIRED, WRONG
 from .glyphs import LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
 from .page import MANY, Cell
@@ -45,7 +45,7 @@ def glyph_cost(cell: Cell, char: str) -> float:
         The cost, 0 for the printed character, or for one of a number in a slot.
     """
     if cell.kind == "between":
-        return FOREIGN + ALIKE * char.isdigit()  # a digit is rather a number's
+        return UNPAIRED + ALIKE * char.isdigit()  # a digit is rather a number's
     if cell.kind == "slot":
         if char in NUMBER_CHARS or (cell.name.startswith("REPLY") and char in ",;"):
             return 0.0
@@ -53,7 +53,7 @@ def glyph_cost(cell: Cell, char: str) -> float:
     if char == cell.char:
         return 0.0
     is_alike = char in LOOKALIKES.get(cell.char, "")
-    return (ALIKE if is_alike else WRONG) + FOREIGN * (char in NUMBER_CHARS)
+    return (ALIKE if is_alike else WRONG) + UNPAIRED * (char in NUMBER_CHARS)
 
 
 @lru_cache(maxsize=500)
@@ -68,7 +68,7 @@ class Aligner:
 
     def __init__(self, cells: Sequence[Cell]) -> None:
         self.cells = cells
-        lost = [0.0 if cell.kind == "between" else LOST for cell in cells]
+        lost = [0.0 if cell.kind == "between" else UNPAIRED for cell in cells]
         self.lost_sums = np.cumsum([0.0, *lost])
         self.own_gaps = np.array([_own_gaps(cells, j) for j in range(len(cells))])
         self.added_gaps = np.array([[0.0] * 4, *map(_added_gaps, cells)])
@@ -78,13 +78,13 @@ class Aligner:
         """Return the costs of a character in each cell, and of it added after each."""
         if char not in self._costs:
             costs = [glyph_cost(cell, char) for cell in self.cells]
-            outside = FOREIGN + ALIKE * char.isdigit()
+            outside = UNPAIRED + ALIKE * char.isdigit()
             extra = [
                 WRONG + ALIKE * char.isdigit() if cell.kind == "word" else cost
                 for cell, cost in zip(self.cells, costs, strict=True)
             ]
             extra[-1] = min(extra[-1], outside)
-            self._costs[char] = np.array(costs), np.array([FOREIGN, *extra])
+            self._costs[char] = np.array(costs), np.array([UNPAIRED, *extra])
         return self._costs[char]
 
     def align(self, glyphs: Sequence[Glyph]) -> list[Place]:
@@ -130,7 +130,7 @@ def _own_gaps(cells: Sequence[Cell], j: int) -> list[float]:
     if not cell.first:
         return [0.0, ALIKE, ALIKE, WRONG]
     is_behind_number = cell.char.isalpha() and j > 0 and cells[j - 1].kind == "slot"
-    return [FOREIGN * is_behind_number, 0.0, 0.0, 0.0]
+    return [UNPAIRED * is_behind_number, 0.0, 0.0, 0.0]
 
 
 def _added_gaps(cell: Cell) -> list[float]:
@@ -138,5 +138,5 @@ def _added_gaps(cell: Cell) -> list[float]:
     if cell.kind != "slot":
         return [0.0, 0.0, 0.0, 0.0]
     if cell.name in MANY:
-        return [0.0, 0.0, 0.0, FOREIGN]
-    return [0.0, FOREIGN, FOREIGN, WRONG]
+        return [0.0, 0.0, 0.0, UNPAIRED]
+    return [0.0, UNPAIRED, UNPAIRED, WRONG]

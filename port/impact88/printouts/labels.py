@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .costs import ALIKE, FOREIGN, OTHER_LABEL, SLIGHT, WRONG
+from .costs import ALIKE, SLIGHT, UNPAIRED, WRONG
 from .glyphs import LINE_GAP, LOOKALIKES, WIDE_GAP, Glyph, chars_of, split_at_gaps
 from .page import ASTERISKS, CELLS, ROWS
 
@@ -147,11 +147,11 @@ def _label_cost(label: Label, read: str, is_bracketed: bool) -> float:
     """Return the cost that a label was read as another, or with a bracket too many or few."""
     cost = 0.0
     if label.name[:1] in ("X", "Y") and is_bracketed != (label.row > ASTERISKS[0]):
-        cost = FOREIGN / 3
+        cost = UNPAIRED / 3
     if label.text == read:
         return cost
     if not (label.text[-1] == read[-1] == "="):
         return 99.0
     changes = [(a, b) for a, b in zip(label.text, read, strict=False) if a != b]
     is_alike = len(label.text) == len(read) and all(b in LOOKALIKES.get(a, "") for a, b in changes)
-    return cost + (ALIKE + FOREIGN / 3 if is_alike and len(changes) == 1 else OTHER_LABEL)
+    return cost + (ALIKE + UNPAIRED / 3 if is_alike and len(changes) == 1 else WRONG)

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .costs import ALIKE, CONTRADICTED, LOST, SLIGHT, WRONG
+from .costs import ALIKE, CONTRADICTED, SLIGHT, UNPAIRED, WRONG
 from .numerals import MAX_DIGITS, TYPED, opposite, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
@@ -134,7 +134,7 @@ def _options(
     texts = dict(reading.readings(name))
     reply = reading.replies.get(name, "") or ("" if texts else given.get(scene_name(name), ""))
     entry = stored_and_printed(reply, name in ANGLES) if TYPED.fullmatch(reply) else None
-    doubt = ALIKE + LOST * (name in reading.slots)
+    doubt = ALIKE + UNPAIRED * (name in reading.slots)
     for text in [entry[1]] if entry else readings(reply):
         texts[text] = min(texts.get(text, doubt), doubt)
     options: list[Option] = []
@@ -346,7 +346,7 @@ def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> ND
     Another number than was read costs up to twice `CONTRADICTED`, in proportion to their distance.
     """
     if not costs:
-        return np.where(printed == b"", 0.0, LOST)
+        return np.where(printed == b"", 0.0, UNPAIRED)
     numbers = np.where(printed == b"", b"nan", printed).astype(float)
     read = float(next(iter(costs)))
     distances = np.abs(numbers - read) / (np.abs(numbers) + abs(read) + TINY)
