@@ -345,6 +345,7 @@ class Comparison:
         names = {name for name, _ in self.reading.repeated}
         rows = {ROW_OF[name] for name in names}
         full_rows = rows - {ROW_OF[name] for name in NAMES if name not in names}
+        named_rows = full_rows & {row for row, _ in self.reading.disorder}
         for row, glyph in self.reading.disorder:
             kind = Kind.ROW_TWICE if row in full_rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
@@ -352,10 +353,10 @@ class Comparison:
             printed = self.fields.get(name, "")
             is_sure = printed and slot.is_clean and slot.is_bounded
             is_other = is_sure and as_printed(slot.text) != printed
-            if ROW_OF[name] not in full_rows:
-                yield self.finding(Kind.TWICE, name, slot.glyphs, printed, 0)
-            elif is_other:
+            if ROW_OF[name] in full_rows and is_other:
                 yield self.finding(Kind.NUMBER, name, slot.glyphs, printed, 0)
+            elif ROW_OF[name] not in named_rows:
+                yield self.finding(Kind.TWICE, name, slot.glyphs, printed, 0)
 
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
