@@ -267,7 +267,7 @@ class _Reader:
             self.reading.chars |= dict(zip(cells, glyphs[:-1], strict=False))
             self.reading.chars[last] = glyphs[-1]
             if further := glyphs[len(cells) : -1]:  # of a longer label in its place
-                self.reading.foreign.append(further)
+                self.reading.foreign.append([*further])
 
     def _read_between(
         self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]
