@@ -94,5 +94,5 @@ def _solve_table(args: Args, is_table: bool) -> int:
             progress=update,
         )
     remarks = dict.fromkeys([*case.remarks, *results.remarks])
-    say("solve", [*remarks, *results.messages()])
+    say("solve", [*remarks, *results.listed])
     return int(bool(results.bad or results.ended))

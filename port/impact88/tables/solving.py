@@ -50,9 +50,10 @@ class Solved:
     ended : int
         Rows that ended with an Applesoft error.
     listed : list of str
-        The first of the bad rows, each with its place and the reason.
+        The first of the bad rows, each with its place and the reason; at the end how many there
+        are, if they are more.
     remarks : list of str
-        What is implausible, and results left out.
+        What is implausible.
     """
 
     rows: int = 0
@@ -60,12 +61,6 @@ class Solved:
     ended: int = 0
     listed: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
-
-    def messages(self) -> list[str]:
-        """Return the bad rows listed, and how many there are if they are not all listed."""
-        if self.bad == len(self.listed):
-            return self.listed
-        return [*self.listed, f"{self.bad:,} rows could not be used, these first"]
 
 
 def solve_table(
@@ -127,6 +122,8 @@ def solve_table(
 
     write_table(target, blocks())
     solved.remarks += solver.remarks()
+    if solved.bad > len(solved.listed):
+        solved.listed.append(f"{solved.bad:,} rows could not be used, these first")
     return solved
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from math import isfinite, prod
+from math import isfinite, nan, prod
 
 import numpy as np
 
@@ -52,8 +52,10 @@ def _values(case: Case, name: str, text: str) -> list[str]:
     *ends, count = text.split(":")
     if len(ends) != 2 or not count.isdecimal() or not 1 <= int(count) <= MAX_SCENES:
         raise UserError(fault)
-    amounts = [case.with_({name: end}, f"--sweep {name}").entries.get(name) for end in ends]
-    shown = [case.view.shown(name, a.value) for a in amounts if a and not (a.varies or a.share)]
-    if len(shown) != 2 or not all(map(isfinite, shown)):
-        raise UserError(fault)
+    shown = []
+    for end in ends:
+        case = case.with_({name: end}, f"--sweep {name}")
+        if name in case.ranges or not isfinite(case.numbers.get(name, nan)):
+            raise UserError(fault)
+        shown.append(case.view.shown(name, case.numbers[name]))
     return [to_text(x) for x in np.linspace(shown[0], shown[1], int(count)).tolist()]

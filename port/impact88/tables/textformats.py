@@ -208,10 +208,9 @@ def _json_objects(
     for number, line in enumerate(iter(partial(file.readline, LONGEST_LINE), b""), 1):
         if not line.strip():
             continue
-        try:
+        row = None
+        with suppress(ValueError, RecursionError):
             row = json.loads(line.decode("utf-8-sig"), parse_float=numeral, parse_int=numeral)
-        except (ValueError, RecursionError):
-            row = None
         if not isinstance(row, dict) or any(type(x) in (dict, list, bool) for x in row.values()):
             fault = f"is {quoted(line[:99].decode(errors='replace'))}; expected a JSON object"
             raise UserError(f"{fault} of numbers and texts for each row", f"{where}, line {number}")
