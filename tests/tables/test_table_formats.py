@@ -181,11 +181,12 @@ def test_json_refused(tmp_path: Path, text: str, message: str) -> None:
 def test_json_keeps_digits(tmp_path: Path) -> None:
     scene = {**SAMPLES[0], "UX": "-90315.88170"}
     numbers = {n: float(t) for n, t in scene.items() if n != "UX"}
-    text = json.dumps({"id": 7, **numbers}).replace("}", ', "UX": -90315.88170}')
+    text = json.dumps({"id": 7, "car": "Infinity", **numbers}).replace("}", ', "UX": -90315.88170}')
     target = tmp_path / "out.jsonl"
     source = str(write(tmp_path / "in.jsonl", text))
     solve_table(source, str(target), ["KI"])
-    assert json.loads(target.read_text())["id"] == 7
+    row = json.loads(target.read_text())
+    assert (row["id"], row["car"]) == (7, "Infinity")
     solve_table(source, str(target), ["KI"], arithmetic="applesoft")
     row = json.loads(target.read_text())
     reference = impact88.replay({**{n: str(float(t)) for n, t in scene.items()}, "UX": scene["UX"]})

@@ -41,11 +41,8 @@ def read_parquet(path: str) -> Table:
 def _table_of(frame: Any, path: str, first: int) -> Table:
     """Return a frame as a table whose first row has a number: numbers as doubles, and all else as
     texts."""
-    pl = polars()
-    numeric = pl.selectors.numeric()
-    frame = frame.select(numeric.cast(pl.Float64), (~numeric).cast(pl.String, strict=False)).select(
-        frame.columns
-    )
+    numeric = polars().selectors.numeric()
+    frame = frame.with_columns(numeric.cast(float), (~numeric).cast(str, strict=False))
     names = check_headings(frame.columns, path)
     parts = zip(count(first, BLOCK_ROWS), frame.iter_slices(BLOCK_ROWS), strict=False)
     blocks = (
@@ -89,7 +86,7 @@ def _merge_cells(numbers: Any, texts: Any) -> Any:
     """Return a sheet's column: numbers, or texts where a cell is one."""
     if numbers.null_count() == texts.null_count():
         return numbers
-    return numbers.cast(polars().String).fill_null(texts)
+    return numbers.cast(str).fill_null(texts)
 
 
 def frame_of(columns: Mapping[str, Column]) -> Any:

@@ -17,14 +17,14 @@ from .textformats import Table, blocks_of
 MAX_SCENES = 10_000_000  # of one sweep; time and memory grow with them
 
 
-def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
+def sweep_table(case: Case, ranges: Mapping[str, str]) -> Table:
     """Return a table of one scene, a row for each combination of ranges.
 
     Parameters
     ----------
     case : Case
         The scene.
-    ranges : mapping of str to str, optional
+    ranges : mapping of str to str
         LOW:HIGH:COUNT by name; the ends are as in a file, and the last name runs fastest.
 
     Returns
@@ -37,7 +37,6 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
     UserError
         For a text that is no range, and for more than 10 million rows.
     """
-    ranges = ranges or {}
     check_names(ranges, tuple(SCENE), "value of a scene", "--sweep")
     values = {case.view.heading(n): _values(case, n, text) for n, text in ranges.items()}
     if prod(map(len, values.values())) > MAX_SCENES:

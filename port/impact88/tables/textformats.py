@@ -245,7 +245,7 @@ def write_json(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
     for columns in blocks:
         rows = (dict(zip(columns, row, strict=True)) for row in _rows(columns))
         text = "".join(f"{json.dumps(row, ensure_ascii=False)}\n" for row in rows)
-        file.write(text.replace("Infinity", "1e999").encode())
+        file.write(re.sub(r'(?<=": )(-?)Infinity', r"\g<1>1e999", text).encode())
 
 
 def _rows(columns: Mapping[str, Column]) -> Iterator[tuple[Any, ...]]:
