@@ -4,11 +4,13 @@ import random
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import impact88
 from impact88.cases import Case
 from impact88.errors import UserError
+from impact88.tables.engine import write_table
 from impact88.tables.solving import solve_table
 
 PIECES = [b'"', b"'", b",", b";", b"\n", b"\r", b"\0", b"\xff", b"[" * 90, b"{", b"=", b"9" * 400]
@@ -40,10 +42,8 @@ def test_damaged_files(tmp_path: Path, kind: str) -> None:
     if kind == "toml":
         path.write_text(SCENE)
     else:
-        scene = dict(impact88.sample(1))
-        table = tmp_path / "scene.csv"
-        table.write_text("\n".join([",".join(scene), *[",".join(scene.values())] * 9]))
-        solve_table(str(table), str(path), ["VAX"])
+        scene = impact88.sample(1).numbers()
+        write_table(str(path), [{name: np.full(9, number) for name, number in scene.items()}])
     data = path.read_bytes()
     for _ in range(10):
         path.write_bytes(damage(data, rng))
