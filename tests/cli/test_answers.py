@@ -71,6 +71,12 @@ def test_a_result_of_a_reconstruction_is_given_or_refused() -> None:
         ask(Case.loads(INTERSECTION), ["COND"])
 
 
+def test_a_duration_of_contact_gives_forces() -> None:
+    found = ask(Case.loads(REAR_END).with_(TF="0.1 s")).found
+    assert (found["FA"].text, found["FM2"].text, found["FA"].unit) == ("2821", "5642", "lb")
+    assert "FA" not in ask(Case.loads(REAR_END), ALL).found
+
+
 def test_exact_entries_are_given_not_found() -> None:
     answer = ask(Case.loads(REAR_END))
     assert "SA" not in answer.found

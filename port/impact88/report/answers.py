@@ -40,6 +40,8 @@ BACKWARD = tuple(
     "SA HA SB HB SAF HAF SBF HBF DVA PDOFA DVB PDOFB E MUP EM WA WB WAF WBF LOSS".split()
 )
 """Results of a reconstruction, the most asked first."""
+FORCES = ("FA", "FM2", "FM3")
+"""Results of a reconstruction to which the duration of contact is given."""
 COMPONENTS = "DVAF DVAR DVBF DVBR P RR0 EL DT CAX CAY CBX CBY".split()
 ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
@@ -397,7 +399,7 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
             warnings += status.sentences(int(more["STATUS"]) & ~status.IMPOSSIBLE)
     is_exact = {*case.entries} - {*case.ranges}
     names = wanted or [name for name in BACKWARD if name not in is_exact]
-    results = [name for name in names if name in values or name in impact.intervals]
+    results = [n for n in (*names, *FORCES) if n in values or n in impact.intervals]
     remarks = list(words.remarks(impact))
     if impact.verdict == "contradictory":  # the nearest impact would be taken for an answer
         scene, results = {}, []
