@@ -26,7 +26,7 @@ US = View("us")
         ("MU", "0.7 +- 10 %", 0.7, 0.63, 0.77),
         ("MU", "80 .. 90 %", 0.85, 0.8, 0.9),
         ("LOSS", "37 % +- 2", 37, 35, 39),
-        ("UX", ".", 0, 0, 0),
+        ("DA", "6 ft 6 in +- 6", 6.5, 6, 7),
         ("UX", "1E-999999999", 0, 0, 0),
         ("MB", "inf", math.inf, math.inf, math.inf),
         ("IA", "3 lbf-ft-s²", 3, 3, 3),
@@ -46,13 +46,14 @@ def test_accepted(name: str, text: str, value: float, low: float, high: float) -
     ("name", "text", "reason"),
     [
         ("UX", "1,234 km/h", "comma of 1,234 may be a decimal one; expected 1234 or 1.234"),
+        ("MA", "3 .. 1,234 kg", "comma of 1,234 may be a decimal one"),
+        ("UX", "٣ .. ٥", "is not an amount"),
         ("UX", "5 .. 3", "lower limit first"),
         ("UX", "30 +- -2", "no negative tolerance"),
         ("UX", "1 .. 2 .. 3", "is not an amount"),
         ("SAF", "-30", "a speed is not negative; expected 0 or more, or HAF turned by 180"),
         ("SB", "1 +- 1.01", "a speed is not negative"),
         ("UX", "3...5", "is not an amount"),
-        ("UX", "1 0", "is not an amount"),
         ("DA", "6'6\"", "is not an amount"),
         ("DA", "6 ft -6 in", "ft -6 in is not a unit"),
         ("UX", "1e999", "beyond the range of doubles"),
@@ -63,7 +64,9 @@ def test_accepted(name: str, text: str, value: float, low: float, high: float) -
         ("MUP", "85 %", "MU takes shares"),
         ("UX", "skid 62 ft at 0.7", "expected SA, SB, SAF, SBF"),
         ("SAF", "skid -62 ft at 0.7", "above 0"),
-        ("DA", "6 ft 6 in +- 2", "a unit beside each number"),
+        ("UX", "triangular 3 mph 4 mph 5", "a unit beside one number or beside each"),
+        ("UX", ".", "is not an amount"),
+        ("MA", "0,123 lb", "is not an amount"),
     ],
 )
 def test_refused(name: str, text: str, reason: str) -> None:
@@ -108,7 +111,6 @@ def test_pivot_keeps_its_sign() -> None:
 
 
 def test_amounts_are_checked() -> None:
-    infinity = math.inf
-    for fields in ((1, 2, 0), (1, 0, 2, "even"), (1, -infinity, infinity, "normal", -1)):
+    for fields in ((1, 2, 0), (1, 0, 2, "even"), (1, -math.inf, math.inf, "normal", -1)):
         with pytest.raises(UserError, match=r"lower limit first.* of kinds exact, uniform"):
             Amount(*fields)

@@ -73,6 +73,7 @@ def test_options_name_the_view_of_a_file_that_names_none() -> None:
     assert Case.loads('UX = "30 km/h"\nUY = "1 m/s"\nMA = "900 kg"').view == View("metric")
     assert Case.loads('UX = "30 ft/s"\nMA = "90 slug"').view == View("us")
     assert Case.loads('TA = "0.5 rad"').view == View()
+    assert Case.loads('MA = "3000 lb"\nMB = "inf"\nVX = 0').view == View("us")
 
 
 def test_with_is_the_edited_file() -> None:
@@ -83,8 +84,8 @@ def test_with_is_the_edited_file() -> None:
     in_feet = Case.of({"units": "chapter", "UX": 44}).with_(UX="+- 2 mph")
     assert in_feet.entries["UX"].low == pytest.approx(44 - 2 * 22 / 15)
     assert case.with_(DA="+- 10 %").entries["DA"].low == 4.5
-    uncertain = case.with_(UX="28 .. 36").with_(UX="+- 1")
-    assert uncertain.entries["UX"].value == pytest.approx(32 * 22 / 15)
+    with pytest.raises(UserError, match=r"UX = '28 .. 36 \+- 1' is not an amount"):
+        case.with_(UX="28 .. 36").with_(UX="+- 1")
     assert "UX" not in case.with_(UX="").entries
     assert case.written["UX_source"] == "EDR"
     assert "UX_source" not in case.with_(UX="3").written
@@ -177,7 +178,9 @@ def test_friction_as_a_share_of_the_critical() -> None:
         ({"EM": "0"}, "no moment is EM = 1"),
         ({"TB": "46"}, "TB = 46: B moves more than 45° off the way it faces"),
         ({"IA": "374"}, "IA = 374: no vehicle has that radius of gyration"),
-        ({"IA": "54001"}, "IA = 54001: no vehicle has that radius of gyration"),
+        ({"IA": "18376"}, "IA = 18376: no vehicle has that radius of gyration"),
+        ({"MA": "5 t", "IA": "180001"}, "IA = 180001: no vehicle has that radius of gyration"),
+        ({"MA": "1,500 lb", "IA": "8469 lb-ft-s2"}, "radius of gyration"),  # lb-ft²
     ],
 )
 def test_plausibility(changes: dict[str, str], remark: str) -> None:
@@ -185,7 +188,8 @@ def test_plausibility(changes: dict[str, str], remark: str) -> None:
     angles = {"VX": "9", "VY": "0", "TB": "45", "TA": "180"}
     case = Case.of({"units": "metric", **plain, **angles, "IA": "2000"})
     assert not case.remarks
-    assert not case.with_(IA="376").remarks
+    for changes_to_none in ({"IA": "376"}, {"IA": "18374"}, {"MA": "5 t", "IA": "179999"}):
+        assert not case.with_(changes_to_none).remarks
     assert any(remark in text for text in case.with_(changes).remarks)
 
 

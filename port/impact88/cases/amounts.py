@@ -16,17 +16,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple, get_args
 
-from ..decimals import exact, is_number, negated, to_double, to_text
+from ..decimals import exact, negated, to_text
 from ..errors import UserError, quoted
 from ..names import INERTIA, LENGTH, MASS, PERCENT, PIVOT, quantity
-from .units import GRAVITY, PLAIN, Unit, View, is_measured, shown_unit, unit_of
+from .units import GRAVITY, PLAIN, Unit, View, shown_unit, unit_of
 
 Kind = Literal["exact", "uniform", "triangular", "normal"]
 
@@ -172,11 +171,11 @@ class Amount:
             return float(offset + factor * Fraction(x))
 
         value = image(exact(self.text) if self.text and self.value else self.value)
-        ends = (image(self.low), image(self.high)) if self.varies else (value, value)
+        ends = [image(self.low), image(self.high)] if self.varies else [value]
         text = "" if offset or abs(factor) != 1 else self.text
         if text and factor < 0 and value:
             text = negated(text)
-        kind = self.kind if ends[0] != ends[1] else "exact"
+        kind = self.kind if ends[0] != ends[-1] else "exact"
         sd = float(abs(factor) * Fraction(self.sd))
         return Amount(value, min(ends), max(ends), kind, sd, text, self.share)
 
@@ -184,14 +183,19 @@ class Amount:
 # -- the notation
 
 _DIGITS = r"(?:[1-9]\d{0,2}(?:,\d{3})+(?!\d)(?:\.\d*)?|\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_NUMBER = re.compile(rf"([-+]? ?{_DIGITS}) ?([a-zA-Z°%].*)?")
-_FEET = re.compile(rf"([-+]?) ?({_DIGITS}) ?(?:ft|foot|feet) ?({_DIGITS}) ?(?:in|inch|inches)")
+_NUMBER = re.compile(
+    rf"([-+]? ?{_DIGITS}) ?"
+    rf"(?:(?:ft|foot|feet) ?(\d+\.?\d*) ?(in|inch|inches)|([a-zA-Z°%].*))?",
+    re.ASCII,
+)
 _SKID = re.compile(r"skid (.+) at ((?:[-+.\d]|normal |uniform |triangular ).*)")
 _SPELLINGS = str.maketrans({"−": "-", "–": "-", "º": "°", "±": TOLERANCE})
-_DECIMAL_COMMA = re.compile(r"[-+]? ?\d{1,3},\d{3}")
+_COMMA = re.compile(r"(?<![\d,.])\d{1,3},\d{3}(?![\d,.eE])")
+"""A comma that may be a decimal one: 1,234 is a thousand only with an American unit."""
 _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2, "around": 2}
-"""Kinds of several numbers; the first word of a text may be one."""
-_MARKS = {"around": re.compile(r"\+-"), "uniform": re.compile(r"(?<!\.)\.\.(?!\.)")}
+"""Kinds of several numbers; the first word of a text may be one. "around": a middle and its half
+width."""
+_MARKS = {"around": r"\+-", "uniform": r"(?<!\.)\.\.(?!\.)"}
 """Marks between the numbers of kinds."""
 
 
@@ -228,27 +232,25 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
     >>> read("TB", "271 +- 1 %", View(headings="compass")).low
     -183.71
     """
-    words, rule = normalize(text), quantity(name).unit
+    words = normalize(text)
     entry = f"{name} = {quoted(words)}"
     try:
         if len(words) > MAX_LENGTH:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
         if words.startswith("skid"):
             return _skid(name, words, view)
-        if words.lower() == "inf" and rule in (MASS, INERTIA):
+        if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
             return Amount.exactly(math.inf)  # a barrier
-        amount = _amount(name, *parse(rule, words), view)
-        if name in SKIDDING and amount.limits(0.0)[0] < 0:
-            course = f"H{name[1:]}"
-            raise UserError(
-                f"a speed is not negative; expected 0 or more, or {course} turned by 180"
-            )
+        amount = _amount(name, words, view)
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except OverflowError:
         raise UserError(f"{entry} is beyond the range of doubles") from None
     except ValueError:
         raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
+    if name in SKIDDING and amount.limits(0.0)[0] < 0:
+        course = f"H{name[1:]} turned by 180"
+        raise UserError(f"{entry}: a speed is not negative; expected 0 or more, or {course}")
     return amount
 
 
@@ -277,8 +279,8 @@ def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
     kind, _, remainder = words.partition(" ")
     parts = re.split(r" (?=[-+]?\.?\d)", remainder)
     if kind not in _COUNTS:
-        kind = next((kind for kind, mark in _MARKS.items() if mark.search(words)), "exact")
-        parts = _MARKS[kind].split(words) if kind in _MARKS else [words]
+        kind = next((kind for kind, mark in _MARKS.items() if re.search(mark, words)), "exact")
+        parts = re.split(_MARKS[kind], words) if kind in _MARKS else [words]
     if len(parts) != _COUNTS.get(kind, 1):
         raise ValueError(words)
     if kind == "around" and parts[1].endswith("%"):
@@ -292,42 +294,36 @@ def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
 def _number(rule: str, text: str) -> Number:
     """Return the one number of a text. Raises ValueError, and OverflowError beyond the range of
     doubles."""
-    words = text.strip()
-    if rule == LENGTH and (match := _FEET.fullmatch(words)):
-        feet, inches = (_number(rule, digits).value for digits in match.groups()[1:])
-        size = 12 * feet + inches
-        return Number(-size if match[1] == "-" else size, unit_of(rule, "in"), "")
-    digits, symbol = words, ""
-    if " " in words or not is_number(words):  # "." is 0, as INPUT takes it
-        match = _NUMBER.fullmatch(words)
-        if match is None:
-            raise ValueError(words)
-        digits, symbol = match.groups(default="")
+    match = _NUMBER.fullmatch(text.strip())
+    if match is None:
+        raise ValueError(text)
+    digits, inches, inch, symbol = match.groups(default="")
     plain = re.sub("[, ]", "", digits)
-    value = to_double(plain)
-    if math.isinf(value):
+    if math.isinf(float(plain)):
         raise OverflowError
-    unit = unit_of(rule, symbol) if symbol else None
-    return Number(exact(plain) if value else Fraction(0), unit, digits)
+    value = Fraction(plain) if float(plain) else Fraction(0)  # 1E-999999999, too
+    if inches:
+        value = 12 * value + Fraction("-" * digits.startswith("-") + inches)
+    unit = unit_of(rule, inch or symbol) if inch or symbol else None
+    return Number(value, unit, "" if inches else plain)
 
 
-def _amount(name: str, kind: str, numbers: Sequence[Number], view: View) -> Amount:
-    """Return an amount in base units. Raises UserError, and OverflowError beyond the range of
-    doubles."""
-    rule = quantity(name).unit
+def _amount(name: str, words: str, view: View) -> Amount:
+    """Return the amount of a `normalize`d text in base units. Raises as `parse` does."""
+    kind, numbers = parse(quantity(name).unit, words)
     units = [number.unit for number in numbers if number.unit]
-    is_mixed = len({*units}) > 1 or not all(number.digits for number in numbers)
-    if is_mixed and len(units) < len(numbers):
-        raise UserError("expected a unit beside each number")
+    if len(units) not in (0, 1, len(numbers)):
+        raise UserError("expected a unit beside one number or beside each")
     if units and name == "MUP":
         raise UserError("expected a number without %; MU takes shares of the critical")
-    if units and not view.units and is_measured(rule):
-        raise UserError("has a unit; expected units, too, such as us")
-    common = units[0] if units else shown_unit(rule, view.units)
-    for number in numbers:
-        _check_comma(number.digits, number.unit or common)
+    unit = units[0] if units else shown_unit(quantity(name).unit, view.units)
+    comma = _COMMA.search(words)
+    is_american = unit is not None and {unit.side, *(each.side for each in units)} == {"us"}
+    if comma and not is_american:
+        choices = " or ".join(comma[0].replace(",", mark) for mark in ("", "."))
+        raise UserError(f"the comma of {comma[0]} may be a decimal one; expected {choices}")
     values: list[Any] = [  # exact fractions, until they are mapped
-        n.value * n.unit.size / common.size if n.unit and common else n.value for n in numbers
+        n.value * n.unit.size / unit.size if n.unit and unit else n.value for n in numbers
     ]
     first, last = values[0], values[-1]
     reach = math.inf if last else 0
@@ -338,23 +334,15 @@ def _amount(name: str, kind: str, numbers: Sequence[Number], view: View) -> Amou
         "triangular": (first, values[len(values) // 2], last),
         "normal": (first - reach, first, first + reach),
     }[kind]
-    text = numbers[1 if kind == "triangular" else 0].digits if kind != "uniform" else ""
-    text = re.sub("[, ]", "", text)
-    share = name == "MU" and bool(units)
+    nominal = {"uniform": "", "triangular": numbers[len(values) // 2].digits}
+    text = nominal.get(kind, numbers[0].digits)
     distribution: Any = "uniform" if kind == "around" else kind
-    sd: Any = last if kind == "normal" else Fraction(0)
+    sd = last if kind == "normal" else 0
+    share = name == "MU" and bool(units)
     amount = Amount(value, low, high, distribution, sd, text, share)
     if name == "MUP" and value == PIVOT:  # the pivot's mark has no direction
         return amount.mapped(Fraction(1))
-    return amount.mapped(*view.map(name, common.symbol if common else ""))
-
-
-def _check_comma(digits: str, unit: Unit | None) -> None:
-    """Raise UserError for a comma that may be a decimal one: 1,234 is a thousand only with an
-    American unit."""
-    if _DECIMAL_COMMA.fullmatch(digits) and (unit is None or unit.side != "us"):
-        choices = f"{digits.replace(',', '')} or {digits.replace(',', '.')}"
-        raise UserError(f"the comma of {digits} may be a decimal one; expected {choices}")
+    return amount.mapped(*view.map(name, unit.symbol if unit else ""))
 
 
 def _skid(name: str, words: str, view: View) -> Amount:

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from ..decimals import to_double, to_text
+from ..decimals import is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..files import display_name, read_text
 from ..names import DEFAULT_M, PIVOT, SCENE, did_you_mean, quantity
 from .amounts import TOLERANCE, Amount, normalize, read, units_in
-from .estimates import ESTIMATE, SIZES, estimate
-from .motion import contact_point, courses, headings, plane_across
+from .estimates import SIZES, estimate, is_estimate
+from .motion import contact_point, courses, exact_number, plane_across
 from .plausibility import implausible
 from .scenefile import ABOUT, INPUTS, SOURCE, read_toml, write_toml
 from .units import PLAIN, View, is_measured, system_using
@@ -171,7 +171,7 @@ class Case:
                 hint = did_you_mean(name, (*INPUTS, *ABOUT))
                 fault = f"{quoted(name)} is not an entry of a scene{hint}"
                 raise UserError(fault, places.get(name, source))
-        given = {n: text for n, text in written.items() if n in INPUTS}
+        given = {"M": DEFAULT_M} | {n: text for n, text in written.items() if n in INPUTS}
         view = View.of(source, **{n: written.get(n) for n in ("units", "axes", "headings")})
         try:
             if not view.units:
@@ -183,12 +183,12 @@ class Case:
             texts, shares = _nominal_digits(amounts)
         except UserError as error:
             raise error if error.where else UserError(str(error), source) from None
-        derived = {n for n, a in amounts.items() if a.share or a.text == COURSE}
-        derived |= {n for n, text in given.items() if _is_estimate(n, text)}
-        derived |= {"GA", "MU"} if across else set()
-        absent = [name for name in SCENE if name not in texts]
-        is_complete = amounts["M"].value == 4 and {*absent} <= {*POINT_DEFAULTS}
-        omitted = tuple(absent) if is_complete else ()
+        derived = [n for n, a in amounts.items() if a.share or a.text == COURSE]
+        derived += [entry[0] for entry in given.items() if is_estimate(entry)]
+        derived += ["GA", "MU"] if across else []
+        omitted = tuple(name for name in SCENE if name not in texts)
+        if amounts["M"].value != 4 or not {*omitted} <= POINT_DEFAULTS.keys():
+            omitted = ()
         texts |= {name: POINT_DEFAULTS[name] for name in omitted}
         return cls(
             amounts,
@@ -213,7 +213,7 @@ class Case:
         ----------
         changes : mapping of str to str or float, optional
             New entries by name. An empty text removes the entry; one that begins with ``+-`` puts
-            a tolerance around the present value.
+            a tolerance around the present number.
         where : str, optional
             Place of the changes in messages, such as ``--set``.
         **entries
@@ -229,19 +229,14 @@ class Case:
         for name, value in changes.items():
             if name + SOURCE not in changes:
                 texts.pop(name + SOURCE, None)
-            is_around = isinstance(value, str) and normalize(value).startswith(TOLERANCE)
-            texts[name] = f"{self._middle(name)} {value}" if is_around else value
+            if isinstance(value, str) and normalize(value).startswith(TOLERANCE):
+                middle = self.written.get(name, "")
+                if is_number(middle):  # a unit beside the tolerance is not that of the number
+                    middle = f"{middle} {self.view.unit(name)}".rstrip()
+                value = f"{middle} {value}"
+            texts[name] = value
         places = {**self.places, **dict.fromkeys(changes, where)} if where else self.places
         return Case.of(texts, self.source, places=places)
-
-    def _middle(self, name: str) -> str:
-        """Return the present value of an entry as text, to put a tolerance around."""
-        text, amount = self.written.get(name, ""), self.entries.get(name)
-        if text.startswith(ESTIMATE):
-            return ESTIMATE
-        if amount is None or amount.share:
-            return text
-        return f"{self.view.shown_text(name, amount.value)} {self.view.unit(name)}"
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -293,35 +288,28 @@ def entry_text(name: str, value: Any) -> str:
         raise UserError(f"{name} is {quoted(value)}; expected a number or a text") from None
 
 
-def _is_estimate(name: str, text: str) -> bool:
-    """Return True for a yaw inertia that is to be estimated."""
-    return name in ("IA", "IB") and text.startswith(ESTIMATE)
-
-
 def _read_entries(
     given: Mapping[str, str], view: View, is_inferred: bool, places: Mapping[str, str]
 ) -> tuple[dict[str, Amount], list[str]]:
-    """Return the amounts of entries, and remarks on estimates. Raises UserError at the place of an
-    entry."""
+    """Return the amounts of entries, estimates last, and remarks on estimates. Raises UserError at
+    the place of an entry."""
     amounts: dict[str, Amount] = {}
     remarks = []
-    entries = {"M": DEFAULT_M, **given}
-    for name, text in sorted(entries.items(), key=lambda entry: _is_estimate(*entry)):
+    for name, text in sorted(given.items(), key=is_estimate):
         try:
-            if _is_estimate(name, text):
-                digits, remark = estimate(name, amounts, view)
+            if is_estimate((name, text)):
+                text, remark = estimate(name, text, amounts, view)
                 remarks.append(remark)
-                text = f"{digits} {view.unit(name)}" + normalize(text).removeprefix(ESTIMATE)
             amounts[name] = _read_entry(name, text, view)
             is_bare = is_inferred and is_measured(quantity(name).unit) and not units_in(name, text)
-            if is_bare and amounts[name].value:
+            if is_bare and amounts[name].value not in (0, math.inf):
                 raise UserError(
                     f"{name} = {text} has no unit, and other values have; add one, or "
                     f'units = "{view.units}" (--units) for numbers without'
                 )
         except UserError as error:
             raise UserError(str(error), places.get(name)) from None
-    return {name: amounts[name] for name in entries}, remarks
+    return amounts, remarks
 
 
 def _read_entry(name: str, text: str, view: View) -> Amount:
@@ -334,13 +322,16 @@ def _read_entry(name: str, text: str, view: View) -> Amount:
 
 
 def _nominal_digits(entries: Mapping[str, Amount]) -> tuple[dict[str, str], list[str]]:
-    """Return the digits of nominal values for the 1988 program, and a remark on a share of the
-    critical friction. Raises UserError."""
+    """Return the digits of the scene's nominal values for the 1988 program, and a remark on a share
+    of the critical friction. Raises UserError."""
     nominal = contact_point({n: replace(a, kind="exact") for n, a in entries.items()})
-    facing = headings(nominal)
-    amounts = {n: facing.get(n, a) if a.text == COURSE else a for n, a in nominal.items()}
-    texts = {n: a.typed for n, a in amounts.items() if not (a.share or math.isnan(a.value))}
-    if "MU" not in amounts or not amounts["MU"].share:
+    for vehicle, course in courses(nominal).items():
+        heading = f"T{vehicle}"
+        if heading in nominal and nominal[heading].text == COURSE:  # A faces TA + 180, B faces TB
+            nominal[heading] = exact_number(math.remainder(course + 180 * (vehicle == "A"), 360))
+    known = {n: a for n, a in nominal.items() if not (a.share or math.isnan(a.value))}
+    texts = {name: known[name].typed for name in SCENE if name in known}
+    if "MU" not in nominal or not nominal["MU"].share:
         return texts, []
     from ..mechanics.solve import evaluate  # numpy; for a share only
 
@@ -348,7 +339,7 @@ def _nominal_digits(entries: Mapping[str, Amount]) -> tuple[dict[str, str], list
     critical = float(values.get("MUC", math.nan))
     if not math.isfinite(critical):
         return texts, []
-    share = amounts["MU"].value * (-1 if values["gt"] > 0 else 1)  # line 400 turns it again
+    share = nominal["MU"].value * (-1 if values["gt"] > 0 else 1)  # line 400 turns it again
     texts["MU"] = to_text(share * critical)
     percent = f"{100 * abs(share):g} % of the critical friction {abs(critical):.6g}"
     return texts, [f"MU = {share * critical:.6g} is {percent}"]
@@ -362,7 +353,5 @@ def _implausible(entries: Mapping[str, Amount], given: Mapping[str, str], view: 
 
 
 def _doubles(texts: Mapping[str, str]) -> dict[str, float]:
-    """Return the scene's values as doubles; the mass of a barrier, which cannot be typed, is
-    infinite."""
-    numbers = {name: text for name, text in texts.items() if name in SCENE}
-    return {n: math.inf if x == "INF" else to_double(x) for n, x in numbers.items()}
+    """Return typed values as doubles; the mass of a barrier, which cannot be typed, is infinite."""
+    return {n: math.inf if text == "INF" else to_double(text) for n, text in texts.items()}

@@ -29,14 +29,22 @@ SLOPE = 1.03  # ft-s² for each lb, as published
 OFFSET = 1206.0  # lb-ft-s², as published
 
 
-def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str, str]:
-    """Return the digits of an estimated yaw inertia, four of them, in units of the view, and a
+def is_estimate(entry: tuple[str, str]) -> bool:
+    """Return True for name and text of a yaw inertia that is to be estimated."""
+    name, text = entry
+    return name in ("IA", "IB") and text.startswith(ESTIMATE)
+
+
+def estimate(name: str, text: str, amounts: Mapping[str, Amount], view: View) -> tuple[str, str]:
+    """Return the entry of an estimated yaw inertia, of four digits in units of the view, and a
     remark.
 
     Parameters
     ----------
     name : {"IA", "IB"}
         The inertia.
+    text : str
+        The entry as written: what follows its first word, a tolerance, is kept.
     amounts : mapping of str to Amount
         The mass, and the length and width if they are known.
     view : View
@@ -69,5 +77,5 @@ def estimate(name: str, amounts: Mapping[str, Amount], view: View) -> tuple[str,
             f'{MAX_WEIGHT:,} lb, with units = "us" or another; expected {name}, or '
             f"{' and '.join(pair)}"
         )
-    digits = to_text(float(f"{value:.4g}"))
-    return digits, f"{name} = {digits} {view.unit(name)} is estimated: {rule}"
+    number = f"{to_text(float(f'{value:.4g}'))} {view.unit(name)}"
+    return number + text.removeprefix(ESTIMATE), f"{name} = {number} is estimated: {rule}"

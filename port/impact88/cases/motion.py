@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from ..decimals import to_text
 from ..errors import UserError
@@ -26,13 +25,6 @@ _ACROSS = ("PDOFA", "PDOFB", "DVAR", "DVBR", "PT")
 """Directions of the impulse: where one is known, the line is not taken for granted."""
 _ENOUGH = ({"SA", "SB"}, {"SAF", "SBF"})
 """Velocities along one line, either of which leave the momentum no other direction."""
-
-
-class Velocity(NamedTuple):
-    """A velocity: its size and its course in degrees from the x axis."""
-
-    size: float
-    course: float
 
 
 def exact_number(value: float) -> Amount:
@@ -67,20 +59,28 @@ def contact_point(entries: Mapping[str, Amount]) -> dict[str, Amount]:
     return result
 
 
+def velocities(entries: Mapping[str, Amount]) -> dict[str, tuple[float, float]]:
+    """Return the velocities whose directions are known exactly: sizes, NaN where not known, and
+    courses in degrees from the x axis. A vehicle at rest has size 0, and the course 0."""
+    exact = {name: amount.value for name, amount in entries.items() if not amount.varies}
+    vectors = {}
+    for speed, (x, y, course) in VECTORS.items():
+        if exact.get(speed) == 0:
+            vectors[speed] = 0.0, 0.0
+        elif x in exact and y in exact:
+            size = math.hypot(exact[x], exact[y])
+            vectors[speed] = size, math.degrees(math.atan2(exact[y], exact[x]))
+        elif course in exact:
+            vectors[speed] = entries[speed].value if speed in entries else math.nan, exact[course]
+    return vectors
+
+
 def courses(entries: Mapping[str, Amount]) -> dict[str, float]:
     """Return the vehicles' courses before the impact in degrees from the x axis, by "A" and "B",
     where they are known exactly and the vehicle moves."""
-    motions = {vehicle: velocity(entries, f"S{vehicle}") for vehicle in "AB"}
-    return {vehicle: v.course for vehicle, v in motions.items() if v and v.size}
-
-
-def headings(entries: Mapping[str, Amount]) -> dict[str, Amount]:
-    """Return the TA and TB of vehicles that face a course which is known exactly: B faces TB, and A
-    faces TA + 180."""
-    return {
-        f"T{vehicle}": exact_number(math.remainder(course + 180 * (vehicle == "A"), 360))
-        for vehicle, course in courses(entries).items()
-    }
+    vectors = velocities(entries)
+    before = {speed[1]: vectors[speed] for speed in ("SA", "SB") if speed in vectors}
+    return {vehicle: course for vehicle, (size, course) in before.items() if size}
 
 
 def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
@@ -94,61 +94,44 @@ def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
     float or None
         Degrees, from -180 to 180; A approaches against the normal. None for another motion.
     """
-    vectors = {speed: velocity(entries, speed) for speed in VECTORS}
-    velocities = {speed: vector for speed, vector in vectors.items() if vector}
-    moving = [speed for speed, vector in velocities.items() if vector.size]
-    others = [name for s in VECTORS if s not in velocities for name in VECTORS[s]]
-    is_known = any(pair <= velocities.keys() for pair in _ENOUGH)
+    vectors = velocities(entries)
+    moving = [speed for speed, (size, _) in vectors.items() if size]
+    others = [name for speed in VECTORS.keys() - vectors for name in VECTORS[speed]]
+    is_known = any(pair <= vectors.keys() for pair in _ENOUGH)
     if not (is_known and moving and entries.keys().isdisjoint((*others, *_ACROSS))):
         return None
-    line = velocities[moving[0]].course
-    angles = {speed: math.radians(velocities[speed].course - line) for speed in velocities}
-    if any(abs(math.sin(angles[speed])) > PARALLEL for speed in moving):
-        return None
-    along = {speed: v.size * math.cos(angles[speed]) for speed, v in velocities.items()}
-    has_speeds = all(name in entries or VECTORS[name][0] in entries for name in ("SA", "SB"))
-    approach = along.get("SA", 0.0) - along.get("SB", 0.0) if has_speeds else 0.0
+    line = vectors[moving[0]][1]
+    along = dict.fromkeys(("SA", "SB"), math.nan)
+    for speed, (size, course) in vectors.items():
+        angle = math.radians(course - line)
+        if size and abs(math.sin(angle)) > PARALLEL:
+            return None
+        along[speed] = size * math.cos(angle)
+    approach = along["SA"] - along["SB"]
     # where not both speeds before are known, A is taken to be the faster one
-    is_forward = approach > 0 if approach else moving[0][1] == "A"
+    is_forward = approach > 0 or (not approach < 0 and moving[0][1] == "A")
     return math.remainder(line + 180 * is_forward, 360) + 0.0
 
 
 def plane_across(entries: Mapping[str, Amount]) -> tuple[dict[str, Amount], list[str]]:
     """Return the entries of point masses that move along one line with a contact plane across it,
     along which nothing acts, and remarks; other entries unchanged."""
+    result = dict(entries)
     line = line_of_motion(entries) if entries["M"].value == 4 and "GA" not in entries else None
     if line is None:
-        return dict(entries), []
+        return result, []
+    result["GA"] = exact_number(line)
     friction = [name for name in ("MU", "MUP") if name in entries]
-    is_locked = any(entries[name].value == PIVOT for name in friction)
-    unused = "" if is_locked else "".join(f"; {name} is not used" for name in friction)
+    unused = ""
+    if not any(entries[name].value == PIVOT for name in friction):
+        unused = "".join(f"; {name} is not used" for name in friction)
+        result.pop("MUP", None)
+        vectors = velocities(entries).keys()
+        is_implied = {"SA", "SAF"} <= vectors or {"SB", "SBF"} <= vectors
+        if friction or not is_implied:
+            result["MU"] = exact_number(0.0)
     remark = (
         "the motion is along one line: the contact plane is across it, and nothing acts along the "
         f"plane (MU = 0{unused})"
     )
-    is_implied = any(
-        velocity(entries, before) and velocity(entries, after)
-        for before, after in (("SA", "SAF"), ("SB", "SBF"))
-    )
-    result = {**entries, "GA": exact_number(line)}
-    if is_locked:
-        return result, [remark]
-    result.pop("MUP", None)
-    if friction or not is_implied:
-        result["MU"] = exact_number(0.0)
     return result, [remark]
-
-
-def velocity(entries: Mapping[str, Amount], speed: str) -> Velocity | None:
-    """Return a velocity, None if its direction is not known exactly; its size is 1 if that is not
-    known."""
-    x, y, course = (entries.get(name) for name in VECTORS[speed])
-    size = entries.get(speed)
-    if size and not size.varies and not size.value:
-        return Velocity(0.0, 0.0)
-    if x and y and not (x.varies or y.varies):
-        angle = math.degrees(math.atan2(y.value, x.value))
-        return Velocity(math.hypot(x.value, y.value), angle)
-    if course and not course.varies:
-        return Velocity(size.value if size else 1.0, course.value)
-    return None

@@ -17,11 +17,17 @@ LIMITS = {
     MASS: (200.0, 60_000.0, "no vehicle has that mass (200 kg to 60 t)"),
     VELOCITY: (0.0, 500 / 3.6, "no vehicle is as fast (500 km/h)"),
     LENGTH: (0.0, 15.0, "the contact point is more than 15 m from the center of gravity"),
-    # a motorcycle has .65 m, a tractor with semitrailer 5.2
-    INERTIA: (0.5**2, 6.0**2, "no vehicle has that radius of gyration (0.5 m to 6 m)"),
+    # a motorcycle has .65 m, a car .8 to 1.6, a tractor with semitrailer 5.2
+    INERTIA: (
+        0.5**2,
+        6.0**2,
+        "no vehicle has that radius of gyration (0.5 to 6 m; below 5 t, to 3.5)",
+    ),
 }
 """Smallest and largest size in m, kg, s of what a vehicle has, by the rule of the quantity; of a
 yaw inertia for each kg."""
+LIGHT = 5000.0  # kg
+LIGHT_RADIUS = 3.5  # m: lb-ft² of a car typed for lb-ft-s² give 4 and more
 MAX_SIDESLIP = 45.0 + 1e-9  # degrees from a course to the heading; rounding may exceed an exact 45
 RESISTANCES = {"UX": "MA", "UY": "MA", "VX": "MB", "VY": "MB", "WA": "IA", "WB": "IB"}
 """Velocities, each with the mass or inertia that is infinite for a barrier."""
@@ -54,10 +60,12 @@ def implausible(
         rule = quantity(name).unit
         if rule in LIMITS and (rule != LENGTH or name in ("DA", "DB")):
             low, high, words = LIMITS[rule]
-            size, scale = abs(value) * float(view.base_size(rule)), 1.0
+            size: Any = abs(value) * float(view.base_size(rule))
             if rule == INERTIA:
-                scale = values.get(f"M{name[1]}", nan) * float(view.base_size(MASS))
-            is_off = (size < low * scale) | ((size > high * scale) & (size < inf))
+                mass = values.get(f"M{name[1]}", nan) * float(view.base_size(MASS))
+                high = high - (high - LIGHT_RADIUS**2) * (mass < LIGHT)
+                low, high = low * mass, high * mass
+            is_off = (size < low) | ((size > high) & (size < inf))
             yield Remark(name, is_off & ((rule in (MASS, VELOCITY)) | has_size), words)
     for vehicle, course in courses.items():
         if f"T{vehicle}" in values:

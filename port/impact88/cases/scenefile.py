@@ -5,6 +5,7 @@ The digits of a value stay as they are in the file; TOML's binary numbers are ne
 from __future__ import annotations
 
 import datetime
+import json
 import re
 import tomllib
 from collections.abc import Mapping
@@ -58,8 +59,7 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, str]]:
         advice = "expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
         raise UserError(f"is not TOML: {error}; {advice}", source) from None
     for name, value in values.items():
-        is_date = name in ABOUT and isinstance(value, datetime.date)
-        if isinstance(value, bool) or not (is_date or isinstance(value, str | int)):
+        if isinstance(value, bool) or not isinstance(value, str | int | datetime.date):
             fault = f"{name} = {quoted(value)}: expected a number or a text"
             raise UserError(fault, places.get(name, source))
     return {name: str(value) for name, value in values.items()}, places
@@ -99,7 +99,7 @@ _PLAIN_TOML = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 def _toml_text(text: str) -> str:
     """Return a text as a one-line TOML string."""
     line = "".join(c if c.isprintable() else " " for c in text)
-    return '"{}"'.format(line.replace("\\", "\\\\").replace('"', '\\"'))
+    return json.dumps(line, ensure_ascii=False)
 
 
 class Template(NamedTuple):

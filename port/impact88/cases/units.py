@@ -228,7 +228,13 @@ class View:
         unit : str, optional
             Symbol of the unit of the shown number, by default that of `unit`.
         """
-        return _affine_map(self, name, unit)
+        rule = quantity(name).unit
+        symbol = unit or self.unit(name)
+        factor = unit_of(rule, symbol).size / self.base_size(rule) if symbol else Fraction(1)
+        if self.headings and name in FROM_NORTH:
+            north = 0 if self.axes else 90  # north is y, of SAE axes x
+            return -factor, Fraction(north + 180 * (name == "TA"))  # A faces TA + 180
+        return (-factor if self.axes and name in MIRRORED else factor), Fraction(0)
 
     def shown(self, name: str, value: Any) -> Any:
         """Return a base value, a number or an array, as the file shows it.
@@ -271,18 +277,6 @@ class View:
 
 PLAIN = View()
 """Base units, whatever they are, along the listing's axes."""
-
-
-@lru_cache(maxsize=1024)
-def _affine_map(view: View, name: str, unit: str) -> tuple[Fraction, Fraction]:
-    """Return `View.map`."""
-    rule = quantity(name).unit
-    symbol = unit or view.unit(name)
-    factor = unit_of(rule, symbol).size / view.base_size(rule) if symbol else Fraction(1)
-    if view.headings and name in FROM_NORTH:
-        north = 0 if view.axes else 90  # north is y, of SAE axes x
-        return -factor, Fraction(north + 180 * (name == "TA"))  # A faces TA + 180
-    return (-factor if view.axes and name in MIRRORED else factor), Fraction(0)
 
 
 def system_using(units: Iterable[Unit]) -> str:
