@@ -74,6 +74,23 @@ def test_correlations_narrow_the_draws_but_not_the_bounds():
     assert np.diff(together.interval) < 0.6 * np.diff(alone.interval)
 
 
+def test_monte_carlo_error_is_the_scatter_between_seeds():
+    values = {**SAMPLE, "UX": "-31 .. -27"}
+    answers = [bounds(values, "VAX", samples=400, seed=seed, limits=False) for seed in range(20)]
+    ends = np.array([answer.outputs["VAX"].interval for answer in answers])
+    scatter = ends.std(0, ddof=1).max() / (ends[:, 1] - ends[:, 0]).mean()
+    assert 0.5 < answers[0].sampling_error / scatter < 2
+
+
+@pytest.mark.parametrize("moment", [0.5, "0.4 .. 0.6", "normal 0 0.2"])
+def test_equation_18_determines_no_moment_at_a_half(moment):
+    with pytest.raises(UserError, match=r"EM may be 0\.5"):
+        bounds({**SAMPLE, "UX": "-31 .. -27", "EM": moment}, "DVA", samples=10)
+    points = {"M": 4, "MA": 3, "MB": 2, "UX": "-3 +- 1", "VX": 0, "GA": 0, "E": 0, "MU": 0}
+    points |= {"UY": 0, "VY": 0, "EM": moment}
+    assert bounds(points, "DVA", samples=10).outputs["DVA"].lower == pytest.approx(0.8)
+
+
 def test_moving_the_contact_point_and_a_share_of_the_critical_friction():
     answer = bounds({**SAMPLE, "CX": "0 +- 1", "MU": "70 .. 90 %"}, "VAX DVA").outputs
     assert (round(answer["VAX"].lower, 3), round(answer["VAX"].upper, 3)) == (-16.299, -14.149)

@@ -74,6 +74,9 @@ def test_point_masses_and_what_is_missing():
         impact88.solve_for({"MA": 3})
     with pytest.raises(UserError, match="M is 5; expected 6 for bodies or 4"):
         impact88.solve_for({**entries, "M": [4, 5]})
+    assert solve_for({**entries, "EM": 0.5})[0]["VX"] == pytest.approx(8.0)
+    with pytest.raises(UserError, match=r"EM may be 0\.5"):
+        impact88.solve_for({**impact88.sample(1).numbers(), "EM": [0, 0.5]})
     with pytest.raises(UserError, match="UZ"):
         impact88.solve_for({**entries, "UZ": 3})
 

@@ -19,7 +19,7 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
-from .densities import quantile
+from .densities import quantile, sampling_error
 from .draws import Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
@@ -588,8 +588,7 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
             if name in result.undetermined or name in intervals:
                 middle = result.values.get(name, float(quantile(column, 0.5)))
                 intervals[name] = low, high = _interval(column, middle)
-                errors = [draws.standard_error(column, end) for end in (low, high)]
-                error = max(error, max(errors) / max(high - low, 1e-300))
+                error = max(error, sampling_error(column, (low, high), draws.family))
     return replace(
         result,
         intervals=intervals,

@@ -20,10 +20,10 @@ from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
 from ..status import Status
-from .densities import draw_correlated, quantile
+from .densities import draw_correlated, quantile, sampling_error
 from .extremes import box_seeds, extremes
 from .impacts import COURSES, FORCES, SPEEDS, Array
-from .known import as_amounts
+from .known import as_amounts, check_moment
 from .problem import OWN_AXES, unwrap_angles, with_arms
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
@@ -76,6 +76,8 @@ class Bounds:
         Name of a STATUS bit -> fraction of the draws that have it.
     draws : mapping of str to ndarray
         The draws by result.
+    sampling_error : float
+        Largest Monte Carlo standard error of an interval's end, relative to the interval's width.
 
     Examples
     --------
@@ -88,6 +90,7 @@ class Bounds:
     outputs: Mapping[str, Bound]
     warnings: Mapping[str, float]
     draws: Mapping[str, Array] = field(default_factory=dict, repr=False)
+    sampling_error: float = 0.0
 
 
 class _Box:
@@ -100,6 +103,8 @@ class _Box:
             line = None if "GA" in amounts else line_of_motion(amounts)
             if line is not None:  # nothing acts along the plane
                 amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
+        elif "EM" in amounts:
+            check_moment(*amounts["EM"].limits())
         self.varied = {name: amount for name, amount in amounts.items() if amount.varies}
         if not self.varied:
             raise UserError("no value is known within limits; expected one such as 0.7 .. 0.9")
@@ -202,13 +207,15 @@ def bounds(
         raise UserError("no scene within these limits has a finite result; expected others")
     drivers = _drivers(box, table)
     nominal = table(box.nominal)[0].tolist()
-    results = {}
+    results, error = {}, 0.0
     for k, name in enumerate(names):
         lower, upper = ends[:, k].tolist()
         levels = dict(zip(QUANTILES, quantile(draws[:, k], QUANTILES).tolist(), strict=True))
         results[name] = Bound(nominal[k], lower, upper, levels, drivers[k])
+        column = draws[np.isfinite(draws[:, k]), k]
+        error = max(error, sampling_error(column, results[name].interval))
     columns = dict(zip(names, draws.T, strict=True))
-    return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns)
+    return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns, error)
 
 
 def _drivers(box: _Box, table: Callable[[Array], Array]) -> list[dict[str, float]]:

@@ -16,6 +16,7 @@ from ..errors import UserError
 Array = NDArray[np.float64]
 
 TABLE_END = 8.3  # standard normal variates beyond occur once in 1e16
+ROUNDING = 1e-12  # width of an interval of which only rounding varies, relative to its ends
 TABLE_SIZE = 8193  # values of a table: quantiles to 1e-7 of the width
 
 
@@ -63,10 +64,30 @@ def _quantile_table(amount: Amount) -> tuple[Array, Array]:
     return variates, np.interp(shares, [0.0, *(sums / sums[-1])], values)
 
 
-def quantile(column: Array, levels: float | tuple[float, ...]) -> Array:
+def quantile(column: Array, levels: float | tuple[float, ...] | Array) -> Array:
     """Return quantiles of the values that are numbers, by linear interpolation."""
     ordered = np.sort(column[np.isfinite(column)])
     return np.asarray(np.interp(levels, np.linspace(0.0, 1.0, len(ordered)), ordered))
+
+
+def sampling_error(
+    column: Array, ends: tuple[float, float], family: NDArray[np.int64] | None = None
+) -> float:
+    """Return the larger Monte Carlo standard error of the ends of an interval of draws, relative to
+    its width.
+
+    It follows from the scatter of the families of draws (Lee and Whiteley 2018); of draws that are
+    independent, each a family, it is the binomial one."""
+    is_below = column[:, None] < np.asarray(ends)
+    shares = is_below.mean(0)
+    off = is_below - shares
+    if family is not None:
+        off = np.stack([np.bincount(family, part) for part in off.T], 1)
+    errors = np.sqrt((off**2).sum(0)) / len(column)
+    low, high = quantile(column, np.clip(np.stack([shares - errors, shares + errors]), 0.0, 1.0))
+    width = ends[1] - ends[0]
+    is_constant = width <= ROUNDING * max(map(abs, ends))
+    return 0.0 if is_constant else float((high - low).max() / 2 / width)
 
 
 def draw_correlated(

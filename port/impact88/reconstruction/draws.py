@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.laws import MAX_FRICTION
-from .densities import draw, log_density, quantile
+from .densities import draw, log_density
 from .fit import Fit
 from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array, Impacts
 from .problem import RANGES, WIDEST, Known, Problem
@@ -71,15 +71,6 @@ class Sample:
     def __getitem__(self, name: str) -> Array:
         """Return the values of a quantity."""
         return np.broadcast_to(self.impacts[name], len(self.points))
-
-    def standard_error(self, column: Array, end: float) -> float:
-        """Return the Monte Carlo standard error of a quantile, from the scatter of the families
-        (Lee and Whiteley 2018); of independent draws it is the binomial one."""
-        is_below = column < end
-        share = is_below.mean()
-        error = np.sqrt((np.bincount(self.family, is_below - share) ** 2).sum()) / len(column)
-        low, high = quantile(column, (max(share - error, 0.0), min(share + error, 1.0)))
-        return float(high - low) / 2
 
 
 class Target:

@@ -14,6 +14,7 @@ from ..errors import UserError, quoted
 from ..mechanics.solve import BODIES, POINT
 from ..names import check_names
 
+WITHOUT_MOMENT = 0.5  # the EM at which Equation 18 does not contain the moment
 ABOVE_ZERO = ("MA", "MB", "IA", "IB")
 
 
@@ -49,6 +50,15 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
             raise UserError(f"{name} is known within limits that reach 0; expected limits above 0")
     check_equations(entries["M"].value if "M" in entries else BODIES)
     return entries
+
+
+def check_moment(least: ArrayLike, greatest: ArrayLike) -> None:
+    """Raise UserError if EM may be 0.5."""
+    if np.any((np.asarray(least) <= WITHOUT_MOMENT) & (np.asarray(greatest) >= WITHOUT_MOMENT)):
+        raise UserError(
+            f"EM may be {WITHOUT_MOMENT:g}, where Equation 18 determines no moment; expected -1 to "
+            "0, or 1 for no moment"
+        )
 
 
 def check_equations(m: ArrayLike) -> None:

@@ -18,7 +18,7 @@ from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import check_names, missing
 from .impacts import AFTER, BEFORE, COEFFICIENTS, IMPULSES, PIVOT, VEHICLES, Array, Impacts
-from .known import check_equations
+from .known import check_equations, check_moment
 
 RANK_TOL = 1e-10  # relative size of singular values, and of sliding, that is 0
 DETERMINED_TOL = 1e-7  # change of a quantity along open directions that is rounding
@@ -101,6 +101,8 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
         values |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "PM"), np.zeros(()))
         values |= dict.fromkeys(("IA", "IB"), np.ones(()))
         values = {"TA": np.zeros(()), "TB": np.zeros(()), **values}
+    elif "EM" in values:
+        check_moment(values["EM"], values["EM"])
     if lacking := [name for name in VEHICLES if name not in values]:
         raise UserError(missing(lacking))
     names = [n for n in UNKNOWNS if n not in values] if unknown is None else list(unknown)

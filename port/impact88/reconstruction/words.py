@@ -13,6 +13,7 @@ from ..cases.units import PLAIN, View
 from ..mechanics.laws import BROKEN
 from ..names import quantity
 from .answer import CONDITIONS, CONTRADICTION, MAX_NAMED, OUTSIDE, Reconstruction
+from .bounds import Bounds
 from .impacts import COURSES, SPEEDS
 from .laws import MissedLaw
 from .problem import CRUSH
@@ -201,6 +202,15 @@ def advice(result: Reconstruction) -> tuple[str, ...]:
     return tuple(sentences)
 
 
+def precision(result: Reconstruction | Bounds) -> str:
+    """Return the number of draws, and how exact the intervals are for it."""
+    count = len(next(iter(result.draws.values())))
+    return (
+        f"intervals of {count:,} draws: Monte Carlo error of their ends (1 sd) at most "
+        f"{100 * result.sampling_error:.2g} % of the width"
+    )
+
+
 def remarks(result: Reconstruction) -> tuple[str, ...]:
     """Return how the known values were understood, and how the impact was searched."""
     starts, impacts, unseen = result.search
@@ -216,11 +226,7 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
                 "friction, or far less likely"
             )
     if result.draws:
-        count = len(next(iter(result.draws.values())))
-        lines.append(
-            f"intervals of {count:,} draws: Monte Carlo error of their ends (1 sd) at most "
-            f"{100 * result.sampling_error:.2g} % of the width"
-        )
+        lines.append(precision(result))
     for reason in dict.fromkeys(result.excluded.values()):
         names = [name for name in result.excluded if result.excluded[name] == reason]
         verb = "need" if len(names) > 1 else "needs"

@@ -54,10 +54,6 @@ UNUSABLE = (
 )
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
-_ERROR = math.sqrt(0.05 * 0.95 / DRAWS)  # standard error of the draws below a 5 % quantile
-MONTE_CARLO = f"intervals of {DRAWS:,} draws: Monte Carlo error of their ends (1 sd) at most"
-NEAR_ENDS = (0.05 - _ERROR, 0.05 + _ERROR, 0.95 - _ERROR, 0.95 + _ERROR)
-"""Quantiles one standard error on either side of an interval's ends."""
 NOISE = 1e-9  # width of an interval over the value: so much is rounding
 MAX_DRIVERS = 3  # values named as those that make a result uncertain
 MIN_SHARE = 0.05  # of a result's variance, from which a value is named
@@ -241,8 +237,8 @@ def _left_out(
 
 def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
     """Return an answer with 90 % intervals of its results, and what they depend on."""
+    from ..reconstruction import words
     from ..reconstruction.bounds import BOUNDED, bounds
-    from ..reconstruction.densities import quantile
 
     case = answer.case
     # random draws do not depend on the file's order; a TA that follows a course is a number
@@ -258,18 +254,16 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
         correlations=case.correlations,
         limits=False,  # the answer has intervals only
     )
-    intervals, squares, error = {}, {}, 0.0
+    intervals, squares = {}, {}
     for name, bound in sample.outputs.items():
         width = bound.interval[1] - bound.interval[0]
         if width > NOISE * abs(bound.nominal):
             intervals[name] = bound.interval
             squares[name] = {n: effect * effect for n, effect in bound.drivers.items()}
-            lows, highs = quantile(sample.draws[name], NEAR_ENDS).reshape(2, 2)
-            error = max(error, np.ptp(lows) / 2 / width, np.ptp(highs) / 2 / width)
     warnings = [
-        f"in {100 * fraction:.2g} % of the draws {words}"
+        f"in {100 * fraction:.2g} % of the draws {text}"
         for name, fraction in sample.warnings.items()
-        if (words := status.WORDS[status.Status[name]]) not in answer.warnings
+        if (text := status.WORDS[status.Status[name]]) not in answer.warnings
     ]
     return replace(
         answer,
@@ -277,7 +271,7 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
         question=f"{answer.question} with limits of {', '.join(case.ranges)}",
         found=numbers_of(case, values, intervals),
         sections={"depends": _dependences(squares)},
-        remarks=(*answer.remarks, f"{MONTE_CARLO} {100 * error:.2g} % of the width"),
+        remarks=(*answer.remarks, words.precision(sample)),
         warnings=(*answer.warnings, *warnings),
     )
 
