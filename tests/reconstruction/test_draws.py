@@ -15,7 +15,7 @@ from impact88.reconstruction.densities import (
     sampling_error,
 )
 from impact88.reconstruction.draws import Target, sample
-from impact88.reconstruction.problem import Problem
+from impact88.reconstruction.problem import WIDEST, Problem
 from impact88.reconstruction.words import remarks
 
 LEVELS = (0.05, 0.5, 0.95)
@@ -48,7 +48,8 @@ def _rejection(entries, draws, count, rng):
     columns = {n: np.full(count, a.value) for n, a in entries.items() if not a.varies}
     columns["VX"] = rng.uniform(entries["VX"].low, entries["VX"].high, count)
     if "HA" in entries:  # flat over the speed, since the course is known
-        speed = rng.uniform(0, 1.3 * draws["SA"].max(), count)
+        limit = WIDEST * draws.target.problem.speed  # of what is not known
+        speed = rng.uniform(0, min(1.3 * draws["SA"].max(), limit), count)
         course = np.radians(rng.uniform(entries["HA"].low, entries["HA"].high, count))
         columns |= {"UX": speed * np.cos(course), "UY": speed * np.sin(course)}
     else:
@@ -73,8 +74,8 @@ def _rejection(entries, draws, count, rng):
 def test_draws_are_those_of_rejection(polar):
     entries = _forward_problem(int(polar), polar)
     draws = sample(Problem(entries))
-    survivors = _rejection(entries, draws, 300_000, np.random.default_rng(1))
-    assert len(survivors["UX"]) > 1200
+    survivors = _rejection(entries, draws, 600_000, np.random.default_rng(1))
+    assert len(survivors["UX"]) > 2400
     for name in ("UX", "VX", "VAX", "WBF", "E", "EM", "MUP", "DVA", "DVB", "LOSS"):
         reference = np.quantile(survivors[name], LEVELS)
         off = np.abs(np.quantile(draws[name], LEVELS) - reference) / survivors[name].std()

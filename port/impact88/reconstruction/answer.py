@@ -37,7 +37,10 @@ MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
-OUTSIDE = "too few random draws lie within all limits: intervals are to first order"
+OUTSIDE = (
+    "too few random draws lie within all limits: intervals are to first order, and what is left "
+    "open has none; wider limits or one more known value would help"
+)
 CONDITIONS = {
     "approach": "VC",
     "push": "PN",

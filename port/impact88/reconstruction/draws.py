@@ -32,6 +32,7 @@ JUMP = 2.38  # scale of a differential-evolution move, over sqrt(2 d) (ter Braak
 MODE_JUMPS = 0.05  # proportion of moves by a whole difference, between modes
 STAGE_MOVES = 3.0  # accepted moves of each particle, on average: at each power, between draws
 LAST_MOVES = 8.0  # at the last power
+PRIOR_ROUNDS = 8  # of points from the prior, until their effective number is `PARTICLES`
 MAX_ROUNDS = 60  # of points from the prior, of moves, and of draws that are kept
 
 
@@ -106,8 +107,10 @@ class Target:
                 angle = np.arctan(MAX_FRICTION)
                 columns[name] = np.tan(rng.uniform(-angle, angle, count))
                 weights += np.log1p(columns[name] ** 2)
-            else:
-                columns[name] = rng.uniform(*RANGES[name], count)
+            else:  # half of them near 0, where an inverse makes much of little
+                share = rng.random(count) ** rng.choice([1, 3], count)
+                weights -= np.log(3.0 + share ** (-2 / 3))  # the density of this mixture
+                columns[name] = max(RANGES[name], key=abs) * share
         table = np.stack([*columns.values()], 1)
         impacts = self.problem.impacts([*columns], table)
         with np.errstate(all="ignore"):
@@ -230,25 +233,27 @@ def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | No
     """Return particles of the prior that physics allows, and the log of their weights."""
     states: list[State] = []
     log_weights: list[Array] = []
-    while sum(map(len, log_weights)) < 2 * PARTICLES and len(states) < MAX_ROUNDS:
+    for rounds in range(MAX_ROUNDS):
         points, weights = target.start(5 * PARTICLES, rng)
         state = target(points)
         rows = np.flatnonzero(np.isfinite(state.prior))
         states.append(state.chosen(rows))
         log_weights.append(weights[rows])
-    if sum(map(len, log_weights)) < MIN_FAMILIES:
+        everything = np.concatenate(log_weights)
+        is_enough = rounds + 1 >= PRIOR_ROUNDS or _effective_number(everything) >= PARTICLES
+        if len(everything) >= 2 * PARTICLES and is_enough:
+            break
+    if len(everything) < MIN_FAMILIES:
         return None
     state = State(*(np.concatenate(column) for column in zip(*states, strict=True)))
-    return state, np.concatenate(log_weights)
+    return state, everything
 
 
 def _next_power(log_weights: Array, likelihood: Array, power: float) -> float:
     """Return the power at which half of the effective sample size is left (bisection)."""
 
     def effective(step: float) -> float:
-        logs = log_weights + (step - power) * likelihood
-        weights = np.exp(logs - logs.max())
-        return float(weights.sum() ** 2 / (weights**2).sum())
+        return _effective_number(log_weights + (step - power) * likelihood)
 
     least = KEPT_PROPORTION * min(effective(power), 2 * PARTICLES)
     if effective(1.0) >= least:
@@ -258,6 +263,12 @@ def _next_power(log_weights: Array, likelihood: Array, power: float) -> float:
         middle = (low + high) / 2
         low, high = (middle, high) if effective(np.exp(middle)) >= least else (low, middle)
     return float(np.exp(low))
+
+
+def _effective_number(log_weights: Array) -> float:
+    """Return the effective sample size of weights."""
+    weights = np.exp(log_weights - log_weights.max(initial=-np.inf))
+    return float(weights.sum() ** 2 / (weights**2).sum()) if len(weights) else 0.0
 
 
 def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:

@@ -12,8 +12,6 @@ from dataclasses import dataclass, field, replace
 from heapq import nlargest
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .. import status
 from ..cases.case import Case
 from ..errors import UserError
