@@ -64,6 +64,7 @@ def test_accepted(name: str, text: str, value: float, low: float, high: float) -
         ("MUP", "85 %", "MU takes shares"),
         ("UX", "skid 62 ft at 0.7", "expected SA, SB, SAF, SBF"),
         ("SAF", "skid -62 ft at 0.7", "above 0"),
+        ("SAF", "skid 62 ft at 1.9 +- .11", "expected at most 2"),
         ("UX", "triangular 3 mph 4 mph 5", "a unit beside one number or beside each"),
         ("UX", ".", "is not an amount"),
         ("MA", "0,123 lb", "is not an amount"),
@@ -98,6 +99,9 @@ def test_skid_is_a_speed() -> None:
     assert amount.value == pytest.approx(speed, rel=1e-15)
     assert amount.high == pytest.approx(speed * math.sqrt(0.75 / 0.7), rel=1e-15)
     assert amount.kind == "uniform"
+    assert read("SAF", "skid 62 ft at 1.9 +- .1", US).high == pytest.approx(
+        math.sqrt(4 * 32.174 * 62), rel=1e-4
+    )
     both = read("SAF", "skid 60 .. 64 ft at 0.7 +- 0.05", US)
     assert both.kind == "normal"
     assert both.low < both.value - both.sd < both.value + both.sd < both.high

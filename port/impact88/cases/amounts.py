@@ -31,6 +31,7 @@ Kind = Literal["exact", "uniform", "triangular", "normal"]
 
 TOLERANCE = "+-"
 """Mark of a half width; ± and +/- are read as this."""
+MAX_DRAG = 2.0  # tires on dry pavement reach about 1; 7 is a lost point
 SKIDDING = ("SA", "SB", "SAF", "SBF")
 """Speeds: sizes, whose directions are HA HB HAF HBF."""
 MAX_LENGTH = 70  # characters of an entry; three and their commas fit the 239 that INPUT keeps
@@ -359,6 +360,8 @@ def _skid(name: str, words: str, view: View) -> Amount:
     distances, frictions = ((*part.limits(), part.value) for part in parts)
     if min(*distances, *frictions) <= 0:
         raise UserError("expected a distance and a friction above 0")
+    if max(frictions) > MAX_DRAG:
+        raise UserError(f"drag factor {match[2]}; expected at most {MAX_DRAG:g}, such as 0.7")
     gravity = float(GRAVITY / view.base_size(LENGTH))
     slow, fast, value = (
         math.sqrt(2 * gravity * d * mu) for d, mu in zip(distances, frictions, strict=True)
