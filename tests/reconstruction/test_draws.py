@@ -221,3 +221,22 @@ def test_correlated_values():
     draws = draw_correlated(amounts, 50_000, np.random.default_rng(0), {("MA", "IA"): 0.8})
     reference = 6 / np.pi * np.arcsin(0.4)  # rank correlation of a Gaussian copula
     assert np.corrcoef(draws.T)[0, 1] == pytest.approx(reference, abs=0.01)
+
+
+@pytest.mark.parametrize("speed", [40, 38])
+def test_a_result_at_its_least_value_has_an_interval(speed):
+    known = {"M": 4, "MA": 5000, "MB": 2500, "SA": "20 +- 2", "HA": 0, "TA": 0}
+    result = reconstruct(known | {"SB": f"{speed} +- 2", "HB": 180, "TB": 180, "E": 0})[0]
+    rng = np.random.default_rng(0)  # momentum of 20,000 plastic impacts
+    draws = rng.uniform(18, 22, 20_000), rng.uniform(speed - 2, speed + 2, 20_000)
+    common = np.abs(5000 * draws[0] - 2500 * draws[1]) / 7500
+    assert result.values["SAF"] == pytest.approx(abs(100 - 2.5 * speed) / 7.5, abs=1e-6)
+    low, high = (0, np.quantile(common, 0.9)) if speed == 40 else np.quantile(common, (0.05, 0.95))
+    assert result.intervals["SAF"] == pytest.approx((low, high), abs=0.03)
+
+
+@pytest.mark.parametrize("speed", [40, 39.9])
+def test_contact_points_that_do_not_approach_are_remarked(speed):
+    known = {"M": 4, "MA": 3000, "MB": 3000, "SA": 40, "HA": 0, "SB": speed, "HB": 0, "E": 0.1}
+    result = reconstruct(known | {"TA": 0, "TB": 0}, samples=0)[0]
+    assert any("do not approach" in line for line in remarks(result)) == (speed == 40)

@@ -37,6 +37,7 @@ MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
 NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
 
+NO_APPROACH = "the contact points do not approach before this impact (gn = 0): nothing collides"
 OUTSIDE = (
     "too few random draws lie within all limits: intervals are to first order, and what is left "
     "open has none; wider limits or one more known value would help"
@@ -417,6 +418,7 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
     names = [name for name in result_names(problem) if _exists(fit, name)]
     open_names = [name for name in names if fit.is_open(name)]
     names = [name for name in names if name not in open_names]
+    touches = abs(fit.value("gn")) <= TIE * problem.speed
     values = {name: _without_noise(name, fit.value(name), problem.size(name)) for name in names}
     count = fit.open_directions.shape[1]
     slopes = {name: fit.slopes(name)[count:] for name in names}
@@ -442,7 +444,7 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
         undetermined=tuple(open_names),
         advice=_advice(fit, open_names),
         excluded=problem.excluded,
-        remarks=tuple(problem.remarks),
+        remarks=(*problem.remarks, NO_APPROACH) if touches else tuple(problem.remarks),
         point=problem.point,
     )
 
@@ -588,10 +590,11 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         column = unwrap_angles(name, draws[name], result.values.get(name))
         if np.isfinite(column).all():
             columns[name] = column
-            if name in result.undetermined or name in intervals:
+            if np.ptp(column) > TIE * fit.problem.size(name):  # also where the slope is 0
                 middle = result.values.get(name, float(quantile(column, 0.5)))
                 intervals[name] = low, high = _interval(column, middle)
-                error = max(error, sampling_error(column, (low, high), draws.family))
+                if name in result.intervals or name in result.undetermined:
+                    error = max(error, sampling_error(column, (low, high), draws.family))
     return replace(
         result,
         intervals=intervals,

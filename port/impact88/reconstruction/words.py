@@ -22,7 +22,8 @@ POOR = 0.05  # probability below which values agree poorly
 LARGEST = 0.5  # share of a variance from which a value is named as what would help
 ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
 """Results that advice names."""
-SOURCES = {"EL": CRUSH, "MUP": ("MU",)}
+SOURCES = {axis: (speed,) for speed, axes in SPEEDS.items() for axis in axes}
+SOURCES |= {"EL": CRUSH, "MUP": ("MU",)}
 """Measured values with the entries that they may come from."""
 VERDICTS = {
     "agrees": "",
@@ -215,7 +216,7 @@ def remarks(result: Reconstruction) -> tuple[str, ...]:
     """Return how the known values were understood, and how the impact was searched."""
     starts, impacts, unseen = result.search
     lines = [text for text in result.remarks if text != OUTSIDE]
-    if impacts and starts > 1:
+    if impacts and math.isfinite(unseen):
         lines.append(
             f"{starts} random starts led to {impacts} impact{'s' * (impacts != 1)}; others that no "
             f"start reached, by estimate: {unseen:.2g}"
