@@ -252,6 +252,8 @@ def test_a_number_cut_at_the_end_of_its_row_is_open_and_another_differs(old: str
     for end in range(digit, digit - 2, -1):
         if old[end - 1].isdigit():
             assert single(PAGE.replace(old + "\n", old[:end] + "\n")).verdict is Verdict.INCOMPLETE
+    first = re.sub(r"^(\D*[0-9]).*", r"\1", old)  # all but the first digit
+    assert single(PAGE.replace(old + "\n", first + "\n")).verdict is Verdict.INCOMPLETE
     other = old[: digit - 1] + "8" + old[digit:]
     assert single(PAGE.replace(old + "\n", other + "\n")).verdict is Verdict.DIFFERS
 
@@ -407,7 +409,8 @@ def test_three_numbers_make_a_printout() -> None:
 
 def test_a_row_further_up_begins_another_printout() -> None:
     assert len(judge(BODY + "\n" + BODY)) == 2
-    assert len(judge(with_row("UX=", row("UX="), row("DA=")))) == 1
+    assert len(judge(with_row("UX=", row("UX="), row("MA=")))) == 1  # four rows
+    assert len(judge(with_row("VX=", row("VX="), row("MA=")))) == 2
 
 
 def test_a_number_cut_at_the_end_of_its_line_is_not_read() -> None:

@@ -231,14 +231,14 @@ class _Search:
     def _vary(self, scene: Recovered, values: dict[str, Decimal], digits: int) -> list[Option]:
         """Return the values of some inputs by which the results cost least.
 
-        Each place is found in turn, from that of the first digit to that of the last, or until
-        there are as many digits.
+        Each place is found in turn, from that of the first digit to that of the last; of a number
+        that may have been cut the further ones, until there are as many digits.
         """
         places = {}
         for name, value in values.items():
             first, last = value.adjusted(), int(value.as_tuple().exponent)
             first = min(first, TENS) if name in ANGLES else first
-            places[name] = range(min(last, first - digits + 1), first + 1)
+            places[name] = range(first - digits + 1, last) if digits else range(last, first + 1)
         for place in range(MAX_DIGITS, -2 * MAX_DIGITS, -1):
             unit = Decimal(1).scaleb(place)
             varied = {
@@ -257,7 +257,8 @@ class _Search:
         if not changes:
             return {}
         order = np.argsort(self._run(scene.inputs, changes)[1], kind="stable")[::-1].tolist()
-        return {changes[k].name: Decimal(changes[k].printed) for k in order}  # the least last
+        least = {changes[k].name: Decimal(changes[k].printed) for k in order}  # the least last
+        return {name: value.normalize() for name, value in least.items()}
 
     def _explain(self, scene: Recovered, options: list[Option]) -> list[Recovered]:
         """Return the scenes with one of some changes that explain all results, by input."""
