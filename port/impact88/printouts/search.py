@@ -257,8 +257,8 @@ class _Search:
         if not changes:
             return {}
         order = np.argsort(self._run(scene.inputs, changes)[1], kind="stable")[::-1].tolist()
-        least = {changes[k].name: Decimal(changes[k].printed) for k in order}  # the least last
-        return {name: value.normalize() for name, value in least.items()}
+        # the least last
+        return {changes[k].name: Decimal(changes[k].printed).normalize() for k in order}
 
     def _explain(self, scene: Recovered, options: list[Option]) -> list[Recovered]:
         """Return the scenes with one of some changes that explain all results, by input."""
