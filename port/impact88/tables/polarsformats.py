@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from itertools import count
 from typing import IO, Any
 
+import numpy as np
+
 from ..errors import UserError, library
 from ..files import decoding
 from .textformats import BLOCK_ROWS, Block, Column, Table, check_headings, heading_name
@@ -41,15 +43,22 @@ def read_parquet(path: str) -> Table:
 def _table_of(frame: Any, path: str, first: int) -> Table:
     """Return a frame as a table whose first row has a number: numbers as doubles, and all else as
     texts."""
-    numeric = polars().selectors.numeric()
-    frame = frame.with_columns(numeric.cast(float), (~numeric).cast(str, strict=False))
     names = check_headings(frame.columns, path)
     parts = zip(count(first, BLOCK_ROWS), frame.iter_slices(BLOCK_ROWS), strict=False)
     blocks = (
-        Block(dict(zip(names, part, strict=True)), range(number, number + part.height))
+        Block(
+            dict(zip(names, map(_column, part), strict=True)), range(number, number + part.height)
+        )
         for number, part in parts
     )
     return Table(names, blocks, path)
+
+
+def _column(series: Any) -> Column:
+    """Return a series as an array if it holds numbers, else its texts."""
+    if series.dtype.is_numeric():
+        return series.cast(float).to_numpy()
+    return series.cast(str, strict=False).to_list()
 
 
 def read_excel(path: str) -> Table:
@@ -92,11 +101,13 @@ def _merge_cells(numbers: Any, texts: Any) -> Any:
 def frame_of(columns: Mapping[str, Column]) -> Any:
     """Return columns as a frame; a number that is none is null, and so is an empty text, which
     polars would put in quotes."""
-    selectors = polars().selectors
-    frame = polars().DataFrame(dict(columns), strict=False)
-    return frame.with_columns(
-        selectors.float().fill_nan(None), selectors.string().replace("", None)
-    )
+    series = []
+    for name, column in columns.items():  # expressions hang after a damaged Parquet file
+        is_float = isinstance(column, np.ndarray) and column.dtype.kind == "f"
+        is_series = isinstance(column, polars().Series)
+        cells = column if is_float or is_series else [None if x == "" else x for x in column]
+        series.append(polars().Series(name, cells, strict=False, nan_to_null=is_float))
+    return polars().DataFrame(series)
 
 
 def write_parquet(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:

@@ -341,7 +341,7 @@ def _entry(cell: Any, unit: str) -> str:
     """Return a cell as an entry of a case; a number without a unit has that of its heading."""
     if cell is None or cell != cell:
         return ""
-    text = cell.strip() if isinstance(cell, str) else to_text(float(cell))
+    text = to_text(float(cell)) if isinstance(cell, float) else str(cell).strip()
     has_unit = any(character.isalpha() or character in "%°" for character in text)
     return f"{text} {unit}" if unit and text and (is_number(text) or not has_unit) else text
 

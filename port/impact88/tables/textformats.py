@@ -147,8 +147,8 @@ def _split_plain(chunk: bytes, names: Sequence[str], delimiter: str, line: int) 
     options: dict[str, Any] = {"has_header": False, "infer_schema": False, "quote_char": None}
     with suppress(polars.exceptions.PolarsError):  # rows of more and of fewer fields; not UTF-8
         frame = polars.read_csv(chunk, **options, separator=delimiter, new_columns=names)
-        is_blank = polars.all_horizontal(polars.all().is_null())
-        if frame.shape == (rows, len(names)) and not frame.select(is_blank.any()).item():
+        has_gaps = all(column.null_count() for column in frame)
+        if frame.shape == (rows, len(names)) and not has_gaps:
             return Block(frame.to_dict(), range(line, line + rows))
     return None
 
