@@ -109,6 +109,18 @@ def test_draws_are_those_of_emcee(entries):
         assert off.max() < 0.15, (target.names[k], off)
 
 
+@pytest.mark.parametrize("seed", [5, 7])  # from a uniform E and EM: no draws, no large losses
+def test_draws_of_many_unknowns_lose_no_part_of_the_impacts(seed):
+    vehicles, truth = random_impact(np.random.default_rng([7, 1]))
+    entries = {name: Amount.exactly(x) for name, x in vehicles.items()}
+    widths = dict.fromkeys(("VAX", "VAY", "VBX", "VBY"), 2) | {"WAF": 0.3, "WBF": 0.3}
+    for name, width in {**widths, "UX": 3, "VY": 3}.items():
+        entries[name] = _within(truth[name] - width, truth[name] + width)
+    draws = sample(Problem(entries), 8000, seed)
+    assert draws.families > 100
+    assert np.quantile(draws["LOSS"], 0.95) == pytest.approx(97.2, abs=0.3)
+
+
 def test_draws_of_section_vii():
     result = section_vii()
     assert -43.9 < np.quantile(result.draws["UX"], 0.05) < -43.4

@@ -188,11 +188,6 @@ class Reconstruction:
     point: bool = False
 
     @property
-    def law(self) -> MissedLaw | None:
-        """The law that known values violate most."""
-        return self.laws[0] if self.laws else None
-
-    @property
     def is_adverse(self) -> bool:
         """True if no impact that physics allows agrees with what is known."""
         return self.verdict in ADVERSE

@@ -240,8 +240,9 @@ def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | No
         states.append(state.chosen(rows))
         log_weights.append(weights[rows])
         everything = np.concatenate(log_weights)
-        is_enough = rounds + 1 >= PRIOR_ROUNDS or _effective_number(everything) >= PARTICLES
-        if len(everything) >= 2 * PARTICLES and is_enough:
+        if len(everything) >= 2 * PARTICLES and (
+            rounds >= PRIOR_ROUNDS or _effective_number(everything) >= PARTICLES
+        ):
             break
     if len(everything) < MIN_FAMILIES:
         return None
@@ -267,8 +268,8 @@ def _next_power(log_weights: Array, likelihood: Array, power: float) -> float:
 
 def _effective_number(log_weights: Array) -> float:
     """Return the effective sample size of weights."""
-    weights = np.exp(log_weights - log_weights.max(initial=-np.inf))
-    return float(weights.sum() ** 2 / (weights**2).sum()) if len(weights) else 0.0
+    weights = np.exp(log_weights - log_weights.max())
+    return float(weights.sum() ** 2 / (weights**2).sum())
 
 
 def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
