@@ -22,7 +22,9 @@ POOR = 0.05  # probability below which values agree poorly
 LARGEST = 0.5  # share of a variance from which a value is named as what would help
 ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
 """Results that advice names."""
-SOURCES = {axis: (speed,) for speed, axes in SPEEDS.items() for axis in axes}
+SOURCES: dict[str, tuple[str, ...]] = {
+    axis: (speed,) for speed, axes in SPEEDS.items() for axis in axes
+}
 SOURCES |= {"EL": CRUSH, "MUP": ("MU",)}
 """Measured values with the entries that they may come from."""
 VERDICTS = {
