@@ -31,7 +31,8 @@ SINGLE_ERROR = 1e-5
 DOUBLE = "computed in double precision, not by an Apple"
 SINGLE = "computed in single precision, not by an Apple"
 NOT_COMPUTED = (
-    "the results were not computed from these inputs, and no slip in one input explains all of them"
+    "the results were not computed from these inputs; no other value of one input was found that "
+    "explains them all (slips, and values no longer than those read, were tried)"
 )
 Scene = Mapping[str, str]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -28,7 +29,7 @@ SLOT_ECHO = re.compile(r"(?m)^[ \t]*\x04?PR# ?[0-9][ \t]*$")
 """Line 610 or 780 as it shows where no disk system takes it."""
 LOOKALIKES = {
     "0": "OQDCU©®Ø@°(){}",
-    "1": "ILTJ|![]/\\",
+    "1": "ILTJ|!/\\",
     "2": "ZRE",
     "3": "SEG",
     "4": "AHD",
@@ -87,7 +88,8 @@ class Glyph(NamedTuple):
 
 
 def decode(data: bytes) -> str:
-    """Return the text of a file in the encoding that leaves the fewest foreign characters.
+    """Return the text of a file: UTF-8 where it is that, else in the encoding that leaves the fewest
+    foreign characters.
 
     Parameters
     ----------
@@ -99,6 +101,9 @@ def decode(data: bytes) -> str:
     str
         The text.
     """
+    if b"\0" not in data:
+        with suppress(UnicodeDecodeError):
+            return data.decode("utf-8-sig")
     texts = [data.decode(encoding, "replace") for encoding in ENCODINGS]
     if sum(byte >= 0x80 for byte in data) > len(data) / 2:  # an Apple's characters: high bit set
         texts.append(bytes(byte & 0x7F for byte in data).decode("ascii"))

@@ -102,19 +102,33 @@ def is_note(line: Sequence[Glyph]) -> bool:
 
 
 def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
-    """Return the anchors of a page, without the label of a note.
+    """Return the anchors of a page, without the labels of notes.
 
-    A note is a line with words and a single label, without which the others are in better order.
+    A note is a label that occurs too often, beside a whole row of others, or the single one in a
+    line with words: without it the others are in better order.
     """
     labels = find_labels(glyphs)
     start = 0
     for line in split_at_gaps(glyphs, LINE_GAP):
         stop = start + len(line)
-        further = [label for label in labels if not start <= label[1] < stop]
-        if is_note(line) and _order(glyphs, further)[0] < _order(glyphs, labels)[0] - WRONG / 2:
-            labels = further
+        own = [label for label in labels if start <= label[1] < stop]
+        for note in own:
+            further = [label for label in labels if label != note]
+            is_candidate = is_note(line) or _is_stray(note[0], own, labels)
+            if is_candidate and _order(glyphs, further)[0] < _order(glyphs, labels)[0] - WRONG / 2:
+                labels = further
         start = stop
     return _order(glyphs, labels)[1]
+
+
+def _is_stray(
+    text: str, line: Sequence[tuple[str, int, int]], page: Sequence[tuple[str, int, int]]
+) -> bool:
+    """Return True for a label beside a whole row of others that the page has too often."""
+    others = {other for other, *_ in line} - {text}
+    rows = [{label.text for label in LABELS if label.row == row} for row in range(len(ROWS))]
+    is_beside = any(row and row <= others for row in rows)
+    return is_beside and [label[0] for label in page].count(text) > sum(text in row for row in rows)
 
 
 def _order(

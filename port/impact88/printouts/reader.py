@@ -24,6 +24,7 @@ from .page import (
     ANGLES,
     ASTERISKS,
     CELLS,
+    FINAL_SPINS,
     HEADING,
     MANY,
     NAMES,
@@ -286,8 +287,10 @@ class _Reader:
             slot.is_bounded = all(ends) and (is_last or is_label)
             slots[owner] = slot
             if owner not in MANY and is_last:  # nothing else belongs there
-                torn = _count_torn(glyphs[count:])
-                slot.is_torn = torn > 0
+                rest = glyphs[count:]
+                torn = _count_torn(rest)
+                is_further = bool(rest) and rest[0].gap == WIDE_GAP  # a hole in a number
+                slot.is_torn = torn > 0 or (is_further and bool(NUMERAL.match(chars_of(rest))))
                 slot.glyphs += glyphs[count : count + torn]
                 count += torn
             tail = glyphs[count:]
@@ -374,7 +377,7 @@ class _Reader:
             is_whole = _is_whole(glyphs, members)
             is_single = is_whole and places == _count_numbers(glyphs, members, members_of)
             label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in owners)
-            if not label and not is_single:
+            if not label and (not is_single or name in FINAL_SPINS):
                 foreign.update(members)
                 continue
             text = chars_of([glyphs[i] for i in members])

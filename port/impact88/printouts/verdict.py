@@ -14,11 +14,13 @@ from difflib import SequenceMatcher
 from types import MappingProxyType
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import LOOKALIKES, Glyph, plain_char
+from .glyphs import LOOKALIKES, WIDE_GAP, Glyph, plain_char
 from .numerals import TYPED, as_printed, is_same_value, readings
 from .page import (
+    ANGLES,
     ASTERISKS,
     CELLS,
+    FINAL_SPINS,
     INPUTS,
     NAMES,
     PROMPTS,
@@ -32,10 +34,11 @@ from .page import (
 )
 from .programs import Listing
 from .reader import Reading, read_printouts
-from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
+from .search import Recovered, find_scenes, scene_name, unseen_digits
 
 CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
 """The beginning, or the end, of a number that lost digits."""
+LEADING_ZERO = re.compile(r"(?<![0-9.])0(?=\.)")
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
@@ -250,7 +253,7 @@ class Comparison:
     def text_findings(self) -> list[Finding]:
         """Return the words, rows and other text that are not as the program prints them."""
         findings = []
-        foreign = [*self.reading.foreign]
+        foreign = [*self.reading.foreign, *self.not_due.values()]
         for word in self.words:
             if word.read != word.printed:
                 kind = Kind.MISREAD if word.read else Kind.LOST
@@ -283,8 +286,13 @@ class Comparison:
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def is_cut(self, name: str, printed: str) -> bool:
-        """Return True for the beginning of a number at the end of its line, or its end after 0."""
-        read = self.reading.slots[name].text
+        """Return True for the beginning of a number at the end of its line, or its end after 0 or
+        a wide gap."""
+        slot = self.reading.slots[name]
+        read = slot.text
+        is_behind_gap = name not in ANGLES and slot.glyphs[0].gap >= WIDE_GAP
+        if is_behind_gap and printed.endswith(read):
+            return True
         if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
             return True
         turns = HALF_TURNS if printed and name == "GA" else ()
@@ -311,6 +319,9 @@ class Comparison:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
                 is_number = is_clean and not is_same and not self.reading.is_machine_read
                 kind = Kind.NUMBER if is_number else Kind.DOUBT
+                beginning, whole = (LEADING_ZERO.sub("", t) for t in (slot.text, reply_text))
+                if is_number and whole.startswith(beginning):  # cut at the margin
+                    kind = Kind.UNREAD
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _words(self) -> tuple[list[Word], list[int]]:
@@ -319,10 +330,13 @@ class Comparison:
         Both prompts may be absent, and both rows of asterisks.
         """
         by_row: dict[int, list[Word]] = {}
+        self.not_due: dict[int, list[Glyph]] = {}
         rows = printed_rows({**self.fields, **dict.fromkeys(REPLIES, "")})
         for j, cell in enumerate(CELLS):
             is_due = cell.name in self.fields or cell.name not in NAMES
             if cell.kind != "word" or cell.row not in rows or not is_due:
+                if j in self.reading.chars:
+                    self.not_due.setdefault(cell.row, []).append(self.reading.chars[j])
                 continue
             words = by_row.setdefault(cell.row, [])
             if cell.first:
