@@ -140,6 +140,7 @@ SAMPLES = {k: impact88.run(impact88.sample(k)).page for k in (1, 2, 3)}
     ("number", "old", "new"),
     [
         (1, "DA= 7.59", "DA= 9.65"),
+        (1, "DB= 3.44", "DB= 2.61"),  # of which one result is near by chance
         (2, "MB= 95.8", "MB= 98.5"),
         (2, "MA= 143.5", "MA= 455.1"),
         (3, "EM= -.9", "EM= -.2"),
@@ -338,6 +339,66 @@ def test_a_row_lost_or_twice_is_named(start: str) -> None:
     assert [f.kind for f in twice.findings] == [Kind.ROW_TWICE]
     other = re.sub(r"[1-8](?!.*[1-8])", "9", row(start))
     assert single(with_row(start, row(start), other)).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize(
+    ("start", "note", "verdict"),
+    [
+        ("DA=", "  UX= 41 mph", Verdict.AS_READ),
+        ("VAX=", "  (WA= 0)", Verdict.AS_READ),
+        ("DA=", "  DB= 41", Verdict.AS_READ),
+        ("DA=", "\nUX= 41 UY= 0 WA= 0 XA= 41 YA= 0", Verdict.DIFFERS),
+    ],
+)
+def test_a_label_beside_another_row_is_a_note(start: str, note: str, verdict: Verdict) -> None:
+    verification = single(with_row(start, row(start) + note))
+    assert verification.verdict is verdict
+    if verdict is Verdict.AS_READ:
+        assert verification.numbers["UX"].read == "-29.04"
+
+
+def test_numbers_without_labels_are_no_spins() -> None:
+    for note, verdict, m in (
+        ("1.47 x 24.9", Verdict.AS_READ, "4"),
+        ("x", Verdict.AS_READ, "4"),
+        ("\nWA= 1.47 WB= 24.9", Verdict.DIFFERS, "6"),
+    ):
+        verification = single(SAMPLES[2].replace("20.77)", f"20.77)  {note}"))
+        assert note in verification.text
+        assert (verification.verdict, verification.scene["M"]) == (verdict, m)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "verdict"),
+    [
+        ("100904.929", "1009    29", Verdict.INCOMPLETE),
+        ("MA= 143.5", "MA= 1   .5", Verdict.INCOMPLETE),
+        ("100904.929", "1009", Verdict.DIFFERS),
+        ("VAX= -13.263", "VAX=     263", Verdict.INCOMPLETE),
+        ("VAX= -13.263", "VAX= 263", Verdict.DIFFERS),
+        ("IB= 1961", "IB= [sic] 1961", Verdict.AS_READ),
+        ("IB= 1961", "IB= [sic] 1962", Verdict.DIFFERS),
+    ],
+)
+def test_a_number_with_a_hole_is_open(old: str, new: str, verdict: Verdict) -> None:
+    assert single(PAGE.replace(old, new)).verdict is verdict
+
+
+def test_a_reply_torn_at_the_margin_is_open() -> None:
+    page = impact88.run({**impact88.sample(1), "WB": "-.12"}).page
+    assert ",-.12\n" in page
+    for reply, verdict in (("-0.", Verdict.INCOMPLETE), ("-.2", Verdict.DIFFERS)):
+        assert single(page.replace(",-.12\n", f",{reply}\n")).verdict is verdict
+
+
+def test_utf_8_is_read_as_utf_8() -> None:
+    text = PAGE.replace("MA=", "M\N{CYRILLIC CAPITAL LETTER A}=")
+    for encoding in ("utf-8", "utf-16-le"):
+        (verification,) = verify(text.encode(encoding))
+        assert verification.verdict is Verdict.AS_READ
+        assert "M\N{CYRILLIC CAPITAL LETTER A}" in [
+            finding.read for finding in verification.findings
+        ]
 
 
 def test_full_width_digits_are_not_the_programs() -> None:
