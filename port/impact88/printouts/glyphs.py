@@ -88,7 +88,7 @@ class Glyph(NamedTuple):
 
 
 def decode(data: bytes) -> str:
-    """Return the text of a file: UTF-8 where it is that, else in the encoding that leaves the fewest
+    """Return the text of a file: UTF-8 if it is valid, else the encoding that leaves the fewest
     foreign characters.
 
     Parameters

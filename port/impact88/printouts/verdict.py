@@ -39,6 +39,7 @@ from .search import Recovered, find_scenes, scene_name, unseen_digits
 CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
 """The beginning, or the end, of a number that lost digits."""
 LEADING_ZERO = re.compile(r"(?<![0-9.])0(?=\.)")
+"""A zero that people type before a point."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
 MAX_FOREIGN_DIGITS = 6
@@ -320,8 +321,8 @@ class Comparison:
                 is_number = is_clean and not is_same and not self.reading.is_machine_read
                 kind = Kind.NUMBER if is_number else Kind.DOUBT
                 beginning, whole = (LEADING_ZERO.sub("", t) for t in (slot.text, reply_text))
-                if is_number and whole.startswith(beginning):  # cut at the margin
-                    kind = Kind.UNREAD
+                if is_number and whole.startswith(beginning) and self.reading.ends_line(reply):
+                    kind = Kind.UNREAD  # cut at the margin
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _words(self) -> tuple[list[Word], list[int]]:
