@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -88,8 +87,7 @@ class Glyph(NamedTuple):
 
 
 def decode(data: bytes) -> str:
-    """Return the text of a file: UTF-8 if it is valid, else the encoding that leaves the fewest
-    foreign characters.
+    """Return the text of a file in the encoding that leaves the fewest foreign characters.
 
     Parameters
     ----------
@@ -101,18 +99,15 @@ def decode(data: bytes) -> str:
     str
         The text.
     """
-    if b"\0" not in data:
-        with suppress(UnicodeDecodeError):
-            return data.decode("utf-8-sig")
     texts = [data.decode(encoding, "replace") for encoding in ENCODINGS]
     if sum(byte >= 0x80 for byte in data) > len(data) / 2:  # an Apple's characters: high bit set
         texts.append(bytes(byte & 0x7F for byte in data).decode("ascii"))
-    return min(texts, key=_foreign_fraction)
+    return min(texts, key=_count_foreign)
 
 
-def _foreign_fraction(text: str) -> float:
+def _count_foreign(text: str) -> int:
     plain = (char.isspace() or " " <= plain_char(char)[:1] < "\x7f" for char in text)
-    return (len(text) - sum(plain) + text.count("\ufffd")) / max(len(text), 1)
+    return len(text) - sum(plain) + text.count("\ufffd")
 
 
 def plain_char(char: str) -> str:

@@ -66,6 +66,7 @@ def _labels_of(row: int) -> Iterator[Label]:
 
 
 LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
+"""The labels of each row."""
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
 LABEL = re.compile("|".join(map(re.escape, _TEXTS)))
 CLOSED = re.compile(r"[-+.E0-9]{1,14}\)")
@@ -104,31 +105,22 @@ def is_note(line: Sequence[Glyph]) -> bool:
 def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     """Return the anchors of a page, without the labels of notes.
 
-    A note is a label that occurs too often, beside a whole row of others, or the single one in a
-    line with words: without it the others are in better order.
+    Without the label of a note the others are in better order: by a label out of order, or by half
+    of that for the single one in a line with words. One in another's place leaves that one lost.
     """
     labels = find_labels(glyphs)
+    cost, anchors = _order(glyphs, labels)
     start = 0
     for line in split_at_gaps(glyphs, LINE_GAP):
         stop = start + len(line)
-        own = [label for label in labels if start <= label[1] < stop]
-        for note in own:
+        limit = WRONG / 2 if is_note(line) else WRONG
+        for note in [label for label in reversed(labels) if start <= label[1] < stop]:
             further = [label for label in labels if label != note]
-            is_candidate = is_note(line) or _is_stray(note[0], own, labels)
-            if is_candidate and _order(glyphs, further)[0] < _order(glyphs, labels)[0] - WRONG / 2:
+            if cost > limit and note[0].endswith("=") and _order(glyphs, further)[0] < cost - limit:
                 labels = further
+                cost, anchors = _order(glyphs, labels)
         start = stop
-    return _order(glyphs, labels)[1]
-
-
-def _is_stray(
-    text: str, line: Sequence[tuple[str, int, int]], page: Sequence[tuple[str, int, int]]
-) -> bool:
-    """Return True for a label beside a whole row of others that the page has too often."""
-    others = {other for other, *_ in line} - {text}
-    rows = [{label.text for label in LABELS if label.row == row} for row in range(len(ROWS))]
-    is_beside = any(row and row <= others for row in rows)
-    return is_beside and [label[0] for label in page].count(text) > sum(text in row for row in rows)
+    return anchors
 
 
 def _order(

@@ -38,8 +38,6 @@ NAMES = tuple(re.findall(r"{(\w+)}", " ".join(ROWS[2:])))
 """The printed numbers, in order."""
 INPUTS = tuple("MA MB IA IB DA DB PA PB TA TB GA UX UY WA VX VY WB E MUP EM".split())
 RESULTS = tuple(name for name in NAMES if name not in INPUTS)
-FINAL_SPINS = ("WAF", "WBF")
-"""The results that a page of M = 4 lacks."""
 ROW_OF = {name: row for row, text in enumerate(ROWS) for name in re.findall(r"{(\w+)}", text)} | {
     "ANGLES": ANGLE_ROW
 }

@@ -24,7 +24,6 @@ from .page import (
     ANGLES,
     ASTERISKS,
     CELLS,
-    FINAL_SPINS,
     HEADING,
     MANY,
     NAMES,
@@ -289,9 +288,9 @@ class _Reader:
             if owner not in MANY and is_last:  # nothing else belongs there
                 rest = glyphs[count:]
                 torn = _count_torn(rest)
-                is_further = bool(rest) and rest[0].gap == WIDE_GAP  # a hole in a number
-                slot.is_torn = torn > 0 or (is_further and bool(NUMERAL.match(chars_of(rest))))
-                slot.glyphs += glyphs[count : count + torn]
+                is_further = NUMERAL.match(chars_of(rest)) and rest[0].gap < LINE_GAP
+                slot.is_torn = bool(torn or is_further)
+                slot.glyphs += rest[:torn]
                 count += torn
             tail = glyphs[count:]
         else:
@@ -377,7 +376,7 @@ class _Reader:
             is_whole = _is_whole(glyphs, members)
             is_single = is_whole and places == _count_numbers(glyphs, members, members_of)
             label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in owners)
-            if not label and (not is_single or name in FINAL_SPINS):
+            if not label and not is_single:
                 foreign.update(members)
                 continue
             text = chars_of([glyphs[i] for i in members])

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from .costs import ALIKE, CONTRADICTED, SLIGHT, UNPAIRED, WRONG
 from .numerals import MAX_DIGITS, TYPED, opposite, readings, slips, stored_and_printed
-from .page import ANGLES, FINAL_SPINS, INPUTS, NAMES, PARTNERS, RESULTS
+from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
 
@@ -36,6 +36,7 @@ TINY = 1e-38
 """Less than any number that the Apple prints."""
 TEXT = "S16"
 CIRCLE = Decimal(360)
+FINAL_SPINS = ("WAF", "WBF")
 
 Texts = dict[str, str]
 
@@ -111,7 +112,8 @@ def find_scenes(
     columns = {name: _options(reading, name, given, program) for name in INPUTS}
     if missing := [name for name, options in columns.items() if not options]:
         return [], missing
-    has_spins = all(name in reading.slots for name in FINAL_SPINS)  # M = 4 prints none
+    spins = [reading.slots[name].label for name in FINAL_SPINS if name in reading.slots]
+    has_spins = spins == ["exact", "exact"]  # M = 4 prints none
     ms = {given["M"]: 0.0} if "M" in given else {"6": 0.0} if has_spins else {"4": 0.0, "6": ALIKE}
     columns["M"] = [Option("M", m, m, cost) for m, cost in ms.items()]
     search = _Search(reading, given, program)
@@ -251,16 +253,11 @@ class _Search:
     def _find_least(
         self, scene: Recovered, values: Mapping[str, Sequence[Decimal]]
     ) -> dict[str, Decimal]:
-        """Return the value of each input by which the results are nearest to those read, the first
-        of equals."""
+        """Return the value of each input by which the results cost least, the first of equals."""
         changes = [_option(name, value) for name, column in values.items() for value in column]
         if not changes:
             return {}
-        run = self._run(scene.inputs, changes)[0]
-        distances = np.zeros(len(changes))  # that one of them is 0 by chance counts little
-        for name, costs in self.expected.items():
-            distances += _distances(run.printed(name), costs) if costs else 0.0
-        order = np.argsort(distances, kind="stable")[::-1].tolist()
+        order = np.argsort(self._run(scene.inputs, changes)[1], kind="stable")[::-1].tolist()
         # the least last
         return {changes[k].name: Decimal(changes[k].printed).normalize() for k in order}
 
@@ -352,18 +349,13 @@ def _result_costs(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> ND
     """
     if not costs:
         return np.where(printed == b"", 0.0, UNPAIRED)
-    total: NDArray[np.float64] = CONTRADICTED * (1 + _distances(printed, costs))
+    numbers = np.where(printed == b"", b"nan", printed).astype(float)
+    read = float(next(iter(costs)))
+    distances = np.abs(numbers - read) / (np.abs(numbers) + abs(read) + TINY)
+    total: NDArray[np.float64] = CONTRADICTED * (1 + np.nan_to_num(distances, nan=1.0))
     for text, cost in costs.items():
         total[printed == text.encode()] = cost
     return total
-
-
-def _distances(printed: NDArray[np.bytes_], costs: Mapping[str, float]) -> NDArray[np.float64]:
-    """Return the distance, from 0 to 1, of texts that the program prints from the one read."""
-    numbers = np.where(printed == b"", b"nan", printed).astype(float)
-    read = float(next(iter(costs)))
-    distances: NDArray[np.float64] = np.abs(numbers - read) / (np.abs(numbers) + abs(read) + TINY)
-    return np.nan_to_num(distances, nan=1.0)
 
 
 def printed_fields(scene: Mapping[str, str]) -> Texts:

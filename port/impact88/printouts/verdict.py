@@ -20,7 +20,6 @@ from .page import (
     ANGLES,
     ASTERISKS,
     CELLS,
-    FINAL_SPINS,
     INPUTS,
     NAMES,
     PROMPTS,
@@ -34,7 +33,7 @@ from .page import (
 )
 from .programs import Listing
 from .reader import Reading, read_printouts
-from .search import Recovered, find_scenes, scene_name, unseen_digits
+from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
 CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
 """The beginning, or the end, of a number that lost digits."""
@@ -254,7 +253,8 @@ class Comparison:
     def text_findings(self) -> list[Finding]:
         """Return the words, rows and other text that are not as the program prints them."""
         findings = []
-        foreign = [*self.reading.foreign, *self.not_due.values()]
+        chars, due = self.reading.chars, {j for word in self.words for j in word.cells}
+        foreign = self.reading.foreign + [[chars[j]] for j in chars.keys() - due]
         for word in self.words:
             if word.read != word.printed:
                 kind = Kind.MISREAD if word.read else Kind.LOST
@@ -277,6 +277,8 @@ class Comparison:
         if not slot:
             return Kind.UNREAD
         read = slot.text
+        if not text and slot.label != "exact":
+            return Kind.FOREIGN
         if read == text and slot.is_clean:
             return None
         if text == read or text in readings(read):
@@ -290,11 +292,9 @@ class Comparison:
         """Return True for the beginning of a number at the end of its line, or its end after 0 or
         a wide gap."""
         slot = self.reading.slots[name]
-        read = slot.text
-        is_behind_gap = name not in ANGLES and slot.glyphs[0].gap >= WIDE_GAP
-        if is_behind_gap and printed.endswith(read):
-            return True
-        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
+        read = LEADING_ZERO.sub("", slot.text)
+        is_end = CUT_NUMBER.match(read) or (name not in ANGLES and slot.glyphs[0].gap >= WIDE_GAP)
+        if is_end and printed.endswith(read.lstrip("-")):
             return True
         turns = HALF_TURNS if printed and name == "GA" else ()
         numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
@@ -318,11 +318,9 @@ class Comparison:
             is_exact = slot.label == "exact"
             if not is_same or not is_exact:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
-                is_number = is_clean and not is_same and not self.reading.is_machine_read
-                kind = Kind.NUMBER if is_number else Kind.DOUBT
-                beginning, whole = (LEADING_ZERO.sub("", t) for t in (slot.text, reply_text))
-                if is_number and whole.startswith(beginning) and self.reading.ends_line(reply):
-                    kind = Kind.UNREAD  # cut at the margin
+                kind = Kind.DOUBT
+                if is_clean and not is_same and not self.reading.is_machine_read:
+                    kind = Kind.UNREAD if self.is_cut(reply, reply_text) else Kind.NUMBER
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _words(self) -> tuple[list[Word], list[int]]:
@@ -331,13 +329,10 @@ class Comparison:
         Both prompts may be absent, and both rows of asterisks.
         """
         by_row: dict[int, list[Word]] = {}
-        self.not_due: dict[int, list[Glyph]] = {}
         rows = printed_rows({**self.fields, **dict.fromkeys(REPLIES, "")})
         for j, cell in enumerate(CELLS):
             is_due = cell.name in self.fields or cell.name not in NAMES
             if cell.kind != "word" or cell.row not in rows or not is_due:
-                if j in self.reading.chars:
-                    self.not_due.setdefault(cell.row, []).append(self.reading.chars[j])
                 continue
             words = by_row.setdefault(cell.row, [])
             if cell.first:
