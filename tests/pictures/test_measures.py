@@ -46,6 +46,7 @@ CELL = Cell(0, 0, "3", "VAX", "8", 1.0, 5.0, 9, 9)
         ({"other": " "}, "doubt"),
         ({"predicted": ")", "members": 2}, "doubt"),
         ({"predicted": ")", "members": 4}, "differs"),
+        ({"predicted": "U", "members": 2, "name": ""}, "differs"),
         ({"predicted": "3", "members": 2}, "differs"),
         ({"predicted": " ", "margin": 0.3}, "holds"),
         ({"predicted": " ", "margin": 0.5}, "differs"),

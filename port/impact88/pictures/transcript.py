@@ -79,13 +79,14 @@ class Cell(NamedTuple):
     def state(self) -> str:
         """``holds``, ``differs`` or ``doubt``.
 
-        A cell without ink never differs: dropped ink looks like erasure. Nor does one of a label's
-        character that is there once or twice: what is unlike may be the mean.
+        A cell without ink never differs: dropped ink looks like erasure. Nor does a bracket after
+        a number that is there once or twice: what is unlike may be the mean.
         """
         if self.margin < (DIFFERS if self.predicted == BLANK else HOLDS):
             return "holds" if self.distance < MAX_FOREIGN else "doubt"
         is_known = self.other != BLANK and self.other_members >= MIN_MEMBERS
-        is_known &= self.members >= MIN_MEMBERS or self.predicted in IN_NUMBERS
+        if self.name and self.predicted not in IN_NUMBERS:
+            is_known &= self.members >= MIN_MEMBERS
         return "differs" if self.margin > DIFFERS and is_known else "doubt"
 
 
