@@ -54,7 +54,8 @@ def row(start: str) -> str:
 @pytest.mark.captures
 def test_captures_are_identical_as_printed_and_on_an_apples_screen() -> None:
     rows = [item for item in captures.scenes() if "MA= " in item["printout"]]
-    for item in random.Random(1).sample(rows, 20):
+    errors = [item for item in rows if "ERROR" in item["printout"]]
+    for item in random.Random(1).sample(rows, 20) + errors[:2]:
         lines = item["printout"].split("\n")
         screen = [line[k : k + 40] for line in lines for k in range(0, max(1, len(line)), 40)]
         for text in (item["printout"], "\n".join(screen)):

@@ -254,7 +254,9 @@ class Comparison:
         """Return the words, rows and other text that are not as the program prints them."""
         findings = []
         chars, due = self.reading.chars, {j for word in self.words for j in word.cells}
-        foreign = self.reading.foreign + [[chars[j]] for j in chars.keys() - due]
+        foreign = [*self.reading.foreign]
+        if not self.ending:  # an error leaves the label of the number that it met
+            foreign += [[chars[j]] for j in sorted(chars.keys() - due)]
         for word in self.words:
             if word.read != word.printed:
                 kind = Kind.MISREAD if word.read else Kind.LOST
