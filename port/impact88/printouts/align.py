@@ -129,8 +129,8 @@ def _own_gaps(cells: Sequence[Cell], j: int) -> list[float]:
         return [0.0, 0.0, 0.0, 0.0]
     if not cell.first:
         return [0.0, ALIKE, ALIKE, WRONG]
-    is_behind_number = cell.char.isalpha() and j > 0 and cells[j - 1].kind == "slot"
-    return [UNPAIRED * is_behind_number, 0.0, 0.0, 0.0]
+    is_after_number = cell.char.isalpha() and j > 0 and cells[j - 1].kind == "slot"
+    return [UNPAIRED * is_after_number, 0.0, 0.0, 0.0]
 
 
 def _added_gaps(cell: Cell) -> list[float]:

@@ -22,7 +22,7 @@ class Label(NamedTuple):
     text : str
         Its characters, up to the equals sign.
     name : str
-        The number behind it, "" for asterisks.
+        The number after it, "" for asterisks.
     row : int
         Its row.
     start, stop : int
@@ -74,7 +74,7 @@ CLOSED = re.compile(r"[-+.E0-9]{1,14}\)")
 WORDS = re.compile("[A-Z]{3}")
 _BACK = -np.subtract.outer(np.arange(len(LABELS)), np.arange(len(LABELS)))
 _STEPS = np.where(_BACK > 0, SLIGHT * (_BACK - 1), WRONG - SLIGHT * _BACK + ALIKE * (_BACK == 0))
-"""Cost of each label (column) behind each other (row)."""
+"""Cost of each label (column) after each other (row)."""
 
 
 def find_labels(glyphs: Sequence[Glyph]) -> list[tuple[str, int, int]]:

@@ -18,7 +18,7 @@ PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0
 TYPED = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?")
 """A number as it can be typed."""
 RETYPED = re.compile(r"^[-+]0|^0.|[.][0-9]*0$|^[-+]?[.]00|^[+]|[.]$|^-?[0-9]{10}")
-"""Marks of a number that people wrote: a zero or plus sign in front, zeros behind, no exponent."""
+"""Marks of a number that people wrote: a zero or plus sign in front, zeros after, no exponent."""
 BARRED_ZERO = re.compile(r".{1,2}\)")
 """A zero with a bar, as readers tear it into two or three characters."""
 NUMBER_CHARS = "0123456789.-"
@@ -152,12 +152,12 @@ def slips(text: str) -> list[tuple[str, float]]:
     """
     costs: dict[str, float] = {}
     for k in range(len(text) + 1):
-        before, char, behind = text[:k], text[k : k + 1], text[k + 1 :]
-        variants = [(before + new + char + behind, WRONG + SLIGHT) for new in NUMBER_CHARS]
+        before, char, after = text[:k], text[k : k + 1], text[k + 1 :]
+        variants = [(before + new + char + after, WRONG + SLIGHT) for new in NUMBER_CHARS]
         if char:
-            variants += [(before + new + behind, WRONG) for new in NUMBER_CHARS]
-            variants.append((before + behind, WRONG + SLIGHT))
-            variants.append((before + behind[:1] + char + behind[1:], WRONG + SLIGHT))
+            variants += [(before + new + after, WRONG) for new in NUMBER_CHARS]
+            variants.append((before + after, WRONG + SLIGHT))
+            variants.append((before + after[:1] + char + after[1:], WRONG + SLIGHT))
         for variant, cost in variants:
             if PRINTED.fullmatch(variant) and as_printed(variant) == variant != text:
                 costs.setdefault(variant, cost)

@@ -37,7 +37,7 @@ from .page import (
 OWNED = re.compile(
     r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?(?=$|[()%]|[A-Z]{1,4}[=:]|[A-Z]{5})"
 )
-"""A number in one piece behind a label."""
+"""A number in one piece after a label."""
 CUT = re.compile(r"\.$")
 """The end of a number that nobody prints."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
@@ -49,7 +49,7 @@ _NO_NUMBER = re.compile("[^-0-9.E,+]")
 MACHINE_READ = 3
 """Misread characters of labels and damaged numbers from which a machine read the page."""
 MIN_NUMBERS = 3
-"""Numbers, behind two letters of labels each, that make a text a printout."""
+"""Numbers, after two letters of labels each, that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
 FIRST = Label("", "", -1, -1, 0)
@@ -69,7 +69,7 @@ class Slot:
     is_torn : bool
         True if a blank, or a character of something else, is in it.
     is_bounded : bool
-        True if it ends where the program ends a number: at a blank or the mark printed behind it,
+        True if it ends where the program ends a number: at a blank or the mark printed after it,
         before the next label of its row.
     """
 
@@ -85,7 +85,7 @@ class Slot:
 
     @property
     def is_clean(self) -> bool:
-        """True for a number in one piece behind an exact label."""
+        """True for a number in one piece after an exact label."""
         is_number = PRINTED.fullmatch(as_printed(self.text)) and not CUT.search(self.text)
         return self.label == "exact" and not self.is_torn and bool(is_number)
 
@@ -175,7 +175,7 @@ class Reading:
         return bool(slot and LINE_END.match(self.text, slot.glyphs[-1].offset + 1))
 
     def span(self) -> tuple[int, int]:
-        """Return the offsets of the first and behind the last character of the page's own."""
+        """Return the offsets of the first and after the last character of the page's own."""
         places = self.places().values()
         return min(start for start, _ in places), max(stop for _, stop in places)
 
@@ -270,12 +270,12 @@ class _Reader:
                 self.reading.foreign.append([*further])
 
     def _read_between(
-        self, glyphs: Sequence[Glyph], before: Anchor, behind: Label, cells: list[int]
+        self, glyphs: Sequence[Glyph], before: Anchor, after: Label, cells: list[int]
     ) -> None:
         """Read the text between two anchors: the number that the first owns, and the rest."""
         owner, row = _owner(before.label), before.label.row
         is_exact = before.read == before.label.text
-        count = self._count_owned(glyphs, before.label, behind)
+        count = self._count_owned(glyphs, before.label, after)
         slots: dict[str, Slot] = {}
         if count:
             slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
@@ -298,19 +298,19 @@ class _Reader:
             if owner:
                 cells = [SLOT_CELLS[owner], *cells]
         if tail:
-            slots = self._align(tail, cells, before.label, behind, is_exact and not count) | slots
+            slots = self._align(tail, cells, before.label, after, is_exact and not count) | slots
         for name, slot in slots.items():
             if name == "ANGLES":
                 self._add_angles(slot)
             else:
                 self._add_slot(name, slot)
 
-    def _count_owned(self, glyphs: Sequence[Glyph], before: Label, behind: Label) -> int:
+    def _count_owned(self, glyphs: Sequence[Glyph], before: Label, after: Label) -> int:
         """Return how many glyphs are the number, or the numbers, of the label before them."""
         if before.row == HEADING:
             return _end_of_line(glyphs, len(ANGLES))
         if before.row in PROMPTS:
-            is_next = behind.name in ("REPLY_B", "MA") and behind.row == before.row + 1
+            is_next = after.name in ("REPLY_B", "MA") and after.row == before.row + 1
             return len(glyphs) if is_next or self.reading.ending else _end_of_line(glyphs, 1)
         return _count_number(glyphs) if before.text.endswith("=") else 0
 
@@ -340,7 +340,7 @@ class _Reader:
         glyphs: Sequence[Glyph],
         cells: Sequence[int],
         before: Label,
-        behind: Label,
+        after: Label,
         is_owned: bool,
     ) -> dict[str, Slot]:
         """Align glyphs with cells; return the slots, and list what belongs to none.
@@ -387,7 +387,7 @@ class _Reader:
             slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
             if members:
                 slots[name] = slot
-        indices = _within_page(glyphs, foreign, before is FIRST, behind is LAST)
+        indices = _within_page(glyphs, foreign, before is FIRST, after is LAST)
         for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
@@ -403,7 +403,7 @@ class _Reader:
 
 def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
     """Yield the words of the row of angles: a sign before a blank is the next word's, and one
-    behind a digit begins a word."""
+    after a digit begins a word."""
     sign: list[Glyph] = []
     for word in split_at_gaps(row):
         text = chars_of(word)
@@ -425,14 +425,14 @@ def _owner(label: Label) -> str:
     return label.name if label.text[-1:] in ("=", "?") else ""
 
 
-def _cells_between(before: Label, behind: Label) -> Iterator[int]:
+def _cells_between(before: Label, after: Label) -> Iterator[int]:
     """Yield the cells between two labels; of labels out of order those of their rows."""
-    if before.stop <= behind.start:
-        yield from range(before.stop, behind.start)
+    if before.stop <= after.start:
+        yield from range(before.stop, after.start)
         return
     for j, cell in enumerate(CELLS):
-        is_behind_first = cell.row == before.row and j >= before.stop
-        if is_behind_first or (cell.row == behind.row and j < behind.start):
+        is_after_first = cell.row == before.row and j >= before.stop
+        if is_after_first or (cell.row == after.row and j < after.start):
             yield j
 
 
@@ -447,7 +447,7 @@ def _end_of_line(glyphs: Sequence[Glyph], words: int) -> int:
 
 
 def _count_number(glyphs: Sequence[Glyph]) -> int:
-    """Return how many glyphs are the number behind a label: a clean one, or a damaged word."""
+    """Return how many glyphs are the number after a label: a clean one, or a damaged word."""
     word = next(split_at_gaps(glyphs), [])
     text = chars_of(word)
     if number := OWNED.match(text):

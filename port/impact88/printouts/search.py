@@ -257,8 +257,8 @@ class _Search:
         changes = [_option(name, value) for name, column in values.items() for value in column]
         if not changes:
             return {}
+        # the least last, which the dictionary keeps of each name
         order = np.argsort(self._run(scene.inputs, changes)[1], kind="stable")[::-1].tolist()
-        # the least last
         return {changes[k].name: Decimal(changes[k].printed).normalize() for k in order}
 
     def _explain(self, scene: Recovered, options: list[Option]) -> list[Recovered]:

@@ -53,7 +53,7 @@ def verify(
 
     Notes
     -----
-    Labels read exactly are anchors, and each owns the number behind it; only what lies between two
+    Labels read exactly are anchors, and each owns the number after it; only what lies between two
     anchors is aligned. The scene is recovered from the inputs, the listing replayed with it bit for
     bit, and every character compared.
 

@@ -221,8 +221,8 @@ class Comparison:
         start, stop = self.reading.span()
         if before := [j for j in self.places if j < cell]:
             start = self.places[max(before)][1]
-        if behind := [j for j in self.places if j > cell]:
-            stop = self.places[min(behind)][0]
+        if after := [j for j in self.places if j > cell]:
+            stop = self.places[min(after)][0]
         return Finding(kind, name, min(start, stop), max(start, stop), "", printed)
 
     def number_finding(self, kind: Kind, name: str) -> Finding:
@@ -400,7 +400,7 @@ class Comparison:
 
 
 def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
-    """Return True for glyphs without a blank before or behind those of a word."""
+    """Return True for glyphs without a blank before or after those of a word."""
     if not word:
         return False
     return (word[0].offset - run[-1].offset == 1 and not word[0].gap) or (
