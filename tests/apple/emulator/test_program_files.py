@@ -56,27 +56,15 @@ def sent(machine: Applesoft) -> str:
     return machine.take_output()
 
 
-def on_screen(machine: Applesoft, width: int) -> str:
-    """LIST's rows on a screen, line by line, so that none scrolls away; 33 columns as POKE 33,33
-    makes them, where LIST does not break lines itself."""
+def on_screen(machine: Applesoft) -> str:
+    """LIST's rows on a screen, line by line, so that none scrolls away."""
     text = ""
     for number, _ in machine.machine.lines():
-        machine.machine.poke(33, width)
+        machine.machine.poke(33, SCREEN_WIDTH)
         machine.enter("HOME")
         machine.enter(f"LIST {number}")
         text += machine.screen_text()
     return text
-
-
-def cut(machine: Applesoft, width: int) -> str:
-    """LIST on paper that ends at a column."""
-    machine.machine.poke(33, 255)  # no column that LIST would break at is the last
-    rows = []
-    for number, _ in machine.machine.lines():
-        machine.enter(f"LIST {number}")
-        line = re.sub(r"\n     |\n", "", machine.take_output())
-        rows += [line[at : at + width] for at in range(0, len(line), width)]
-    return "\n".join(rows)
 
 
 def image(machine: Applesoft) -> bytes:
@@ -95,15 +83,14 @@ def lines_of(machine: Applesoft) -> list[tuple[int, bytes]]:
         [
             sent,
             lambda machine: re.sub(" +\n", "\n", sent(machine)),
-            lambda machine: on_screen(machine, 40),
-            lambda machine: on_screen(machine, 33),
+            on_screen,
             Applesoft.source,
             image,
             lambda machine: len(image(machine)).to_bytes(2, "little") + image(machine) + bytes(99),
         ],
-        kept=range(3, 7),
+        kept=range(3, 6),
     ),
-    ids=["sent", "stripped", "screen", "poke 33,33", "saved", "tokenised", "DOS 3.3"],
+    ids=["sent", "stripped", "screen", "saved", "tokenised", "DOS 3.3"],
 )
 def test_every_captured_program_loads_as_it_was(form: Any) -> None:
     names = [*TEXTS][:: 1 if "IMPACT88_CAPTURES" in os.environ else 8]
@@ -117,13 +104,11 @@ def test_every_captured_program_loads_as_it_was(form: Any) -> None:
             assert read_program(form(machine)).lines == lines, name
 
 
-@pytest.mark.parametrize("width", [33, 40, 80, 132])
-def test_the_listing_loads_from_paper_of_any_width(width: int) -> None:
+def test_the_listing_loads_as_listed() -> None:
     machine = machine_with(LISTING, small=True)
     lines = lines_of(machine)
-    assert read_program(cut(machine, width)).lines == lines
     assert read_program(sent(machine)).lines == lines
-    assert read_program(on_screen(machine, 40)).lines == lines
+    assert read_program(on_screen(machine)).lines == lines
     assert read_program("".join(f"    {row}\n" for row in sent(machine).split("\n"))).lines == lines
 
 
@@ -164,18 +149,13 @@ def test_only_what_has_no_other_reading_is_listed() -> None:
     assert read_program("10  REM X\n20 PRINT").lines[0] == (10, b"\xb2 X")
 
 
-ROW = "10  PRINT " + '"' + "A" * 29 + '"'
-
-
 @pytest.mark.parametrize(
     ("text", "lines"),
     [
-        (ROW + "\n20  PRINT 1", [10, 20]),  # a full row, and a line
-        (ROW + ";\n1: PRINT 2\n20  END", [10, 20]),  # a colon behind a number continues
-        ("  10 PRINT 1\n 200 PRINT 2\n1000 PRINT 3", [10, 200, 1000]),
         ("30 PRINT 1\n20 PRINT 2\n30 PRINT 3", [20, 30]),  # as typed, the last one stays
+        ("  10 PRINT 1\n 200 PRINT 2\n1000 PRINT 3", [10, 200, 1000]),
         ("]LIST\n\n10  END \n\n]", [10]),
-        ("\f10 PRINT A\n   + B\n20 END\f\x1a", [10, 20]),
+        ("\f10 PRINT A\n20 END\f\x1a", [10, 20]),
         ("", []),
     ],
 )
@@ -190,13 +170,9 @@ def test_where_lines_begin(text: str, lines: list[int]) -> None:
         ('10 A\n20 PRINT "\xe9"', "row 2, column 11: character 'é'"),
         ("10 PRINT 2 \u2212 1".encode(), "row 1, column 12: character '−'"),
         (b'10 PRINT "\xe9"', r"row 1, column 11: character \$E9"),
-        ("10 PRINT 1\nPRINT 2", "row 2 has no line number; a row that continues line 10"),
-        ("10 A = 1\n     20 + B", "row 2 begins with blanks and a number"),
-        ("20 A = 1\n  10: B = 2", "row 2 begins with blanks and a number"),
-        ('10 PRINT "A\n  B"', "row 2 continues a text of line 10"),
-        pytest.param(
-            "10 DATA A,B\n  C", "row 2 continues a text of line 10", marks=pytest.mark.long
-        ),
+        ("10 PRINT 1\nPRINT 2", "row 2 has no line number"),
+        ("10 A = 1\n     20 + B", "row 2 has no line number"),
+        ('10  PRINT "' + "A" * 40 + '\nB"', "row 2 has no line number"),  # cut by the paper
         (b"\1\2\0\0\0\0\3", "no tokenised Applesoft program"),
         (b"\x10\x08\x0a\x00\0\x00\x01", "no tokenised Applesoft program"),
         ("10 PRINT".encode("utf-16-be"), "no tokenised Applesoft program"),
@@ -228,25 +204,6 @@ def test_any_rows_are_a_program_or_refused_by_a_row(rows: list[tuple[str, str]])
         lines, words = [], str(error)
     assert not words or re.search("row [0-9]+|rows end at", words)
     assert all(0 <= number <= 63999 and tokens for number, tokens in lines)
-
-
-def test_two_readings_are_refused() -> None:
-    """At a width of its own, with a blank at the row's end that may be one or none."""
-    text = '10  PRINT "' + "A" * 40 + '\nB"'
-    with pytest.raises(UserError, match="rows end at 51 columns"):
-        read_program(text)
-
-
-def test_two_ways_to_cut_quotes_are_refused() -> None:
-    """Three lines have a quote each: any two neighbours may be one."""
-    rows = ['10  PRINT "' + "A" * 29, '20  PRINT "' + "B" * 29, '30  PRINT "C']
-    rows += ["40 A = " + "1" * 33, " + 1"]
-    with pytest.raises(UserError, match=r"row [23] may begin a line or continue line 10"):
-        read_program("\n".join(rows))
-    with_quotes = [row + '"' if row.startswith("30") else row for row in rows]
-    with_quotes[0] = with_quotes[0][:-1] + '"'
-    with_quotes[1] = with_quotes[1][:-1] + '"'
-    assert [number for number, _ in read_program("\n".join(with_quotes)).lines] == [10, 20, 30, 40]
 
 
 def test_apples_text_files_have_high_bits() -> None:
