@@ -47,15 +47,14 @@ def test_no_text_covers_another_or_leaves_the_paper(name: str) -> None:
 def test_the_picture_is_well_formed_and_holds_no_styles() -> None:
     svg = drawing("oblique")
     elements = {element.tag.removeprefix(SVG) for element in ElementTree.fromstring(svg).iter()}
-    assert elements == {"svg", "title", "marker", "path", "circle", "text", "tspan"}
+    assert elements == {"svg", "title", "marker", "path", "circle", "text"}
     assert "style" not in svg
 
 
 def test_numbers_are_the_answers_own_texts() -> None:
     answer = ask(case_of())
     texts = [text.text for text in texts_of(draw(answer))]
-    assert f"ΔVa {answer.found['DVA'].text}" in texts
-    assert f"Ωb {answer.found['WBF'].text}" in texts
+    assert {answer.found[name].text for name in ("DVA", "DVB", "SAF", "WAF", "WBF")} <= {*texts}
 
 
 def test_the_same_scene_looks_the_same_in_other_axes() -> None:
@@ -114,9 +113,8 @@ def test_a_body_is_a_barrier_from_a_mass_on() -> None:
 
 
 def test_spins_are_drawn_from_a_rate_on_that_can_be_seen() -> None:
-    texts = [t.text for t in texts_of(drawing(WA="0.012"))] + ["|"]
-    assert not any(text.startswith("ωa") for text in texts)
-    assert any(t.text.startswith("ωa") for t in texts_of(drawing(WA="0.03")))
+    assert "spin before" not in notes(WA="0.012")
+    assert "spin before" in notes(WA="0.03")
 
 
 def test_what_cannot_be_drawn_is_named() -> None:
@@ -146,12 +144,12 @@ def test_a_reconstruction_is_drawn_without_a_plane_that_is_not_known() -> None:
     case = Case.of({**changes, "HAF": "-40", "units": "metric", "title": "Elm Street"})
     texts = [text.text for text in texts_of(draw(ask(case)))]
     assert texts.count("Elm Street") == 1
-    assert "t" not in texts
-    assert "P 18250" in texts
+    assert "contact plane" not in texts
+    assert "18250" in texts
 
 
 @pytest.mark.parametrize(("speed", "is_drawn"), [("-25", False), ("25", True)])
 def test_a_scene_that_physics_forbids_is_drawn_with_its_verdict(speed: str, is_drawn: bool) -> None:
     words = notes(UX=speed, VY="0")
     assert ("NO IMPACT: physics forbids what is drawn" in words) is is_drawn
-    assert " t " in words
+    assert "contact plane" in words

@@ -7,7 +7,9 @@ from html import unescape
 from typing import NamedTuple
 
 from impact88.cases import Case
-from impact88.report.drawing import Label
+
+CHARACTER = 0.64  # of the size of type: an upper estimate of the mean width
+ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
 
 SIDE = {
     "units": "us",
@@ -90,11 +92,11 @@ class Placed(NamedTuple):
 
 def texts_of(svg: str) -> list[Placed]:
     """Return the texts of a drawing."""
-    pattern = r'<text x="(\S+)" y="(\S+)" font-size="(\S+)"[^>]*>(.*?)</text>'
+    pattern = r'<text x="(\S+)" y="(\S+)" font-size="(\S+)" text-anchor="(\w+)"[^>]*>(.*?)</text>'
     placed = []
-    for x, y, size, content in re.findall(pattern, svg):
-        text = unescape(re.sub("<[^>]*>", "", content))
-        left, top = float(x), float(y) - 0.78 * float(size)
-        right = left + Label((text, "", ""), "", float(size)).box.real
-        placed.append(Placed(text, left, top, right, top + float(size)))
+    for x, y, size, anchor, content in re.findall(pattern, svg):
+        text, height = unescape(content), float(size)
+        width = height * (0.15 + CHARACTER * len(text))
+        left, top = float(x) - ANCHORS[anchor] * width, float(y) - 0.78 * height
+        placed.append(Placed(text, left, top, left + width, top + height))
     return placed

@@ -1,6 +1,6 @@
 """impact88 report crash.toml -o case.html     a page for the case file: answer, drawing, inputs
 impact88 report crash.toml -o scene.svg     the drawing alone; also .png
-impact88 report --sample 1 -o run.html --paper letter
+impact88 report --sample 1 -o run.html
 
 FILE.toml is any collision that impact88 solve answers. The page is one file, made to be printed on
 two sheets: question, answer with intervals, drawing to scale, inputs with their sources, method,

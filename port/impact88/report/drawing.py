@@ -4,8 +4,8 @@ The contact point is the origin. It lies DA at TA + PA from A's center of gravit
 from B's (line 330 of the listing); A faces TA + 180 and B faces TB. Points are complex, x + iy:
 along the listing's axes in the plane, in pixels with y downwards on paper. The picture is what one
 sees from above whatever the axes of the case: of SAE axes y is shown to the right of x, and with
-compass headings north is up. The numbers are those of the answer; how things look, and the words of
-the legend, are in `templates/drawing.svg`.
+compass headings north is up. How things look, and the table of the answer's numbers below them, are
+in `templates/drawing.svg`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..cases import Case, View
 from ..errors import UserError, library
 from ..names import LENGTH, MASS, missing
-from .answers import Answer, Row, numbers_of
+from .answers import Answer, numbers_of
 from .pages import render
 
 Points = NDArray[Any]  # complex
@@ -48,32 +48,14 @@ LONGEST_VELOCITY = 142.0
 IMPULSE_LENGTH = 75.0
 HALF_PLANE = 93.0
 SIDE_STEP = 9.0  # between arrows that start from one center
+LETTER_STEP = 14.0  # from the corner of a body to its letter
 SHORTEST = 0.7  # a shorter velocity, or a spin that moves the farthest point less, is not drawn
 SPIN_TURN = 2.2  # radians of a spin's arc on either side
-ARROWS = {
-    "before": ("v", "S{}"),
-    "after": ("V", "S{}F"),
-    "change": ("ΔV", "DV{}"),
-    "spin before": ("ω", "W{}"),
-    "spin after": ("Ω", "W{}F"),
-    "impulse": ("P", "P"),
-    "plane": ("t", ""),
-}
-"""Kinds of arrows: letter, and name of the size."""
-SPIN_RADII = {"spin before": 12.0, "spin after": 20.0}
+SPINS = {"spin before": ("W{}", 12.0), "spin after": ("W{}F", 20.0)}
+"""Kind of arrow -> name of the spin, and radius of its arc."""
 NUMBERS = "SA SB SAF SBF DVA DVB P WA WAF WB WBF PDOFA PDOFB".split()
-"""Results beside arrows, and hours."""
+"""Results in the table."""
 VELOCITIES = {"A": "UX UY VAX VAY".split(), "B": "VX VY VBX VBY".split()}
-
-LINE_POINTS = 200  # that represent a line
-TEXT_STEP = 2.0  # px between the points that represent a text
-TEXT_COST = 1000.0  # points of lines that are as bad to cover as a point of a text
-CHARACTER_WIDTH = 0.64  # of the size of type: an upper estimate of the mean in DejaVu Sans
-SINGLE_EXTRA = 0.15  # of the size of type: a single letter may be so much wider
-LABEL_REACHES = np.array([3.0, 8.0, 14.0, 22.0, 32.0, 45.0, 60.0, 80.0, 100.0])[:, None]
-LABEL_TURNS = np.radians([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])
-"""Places of a label: px from its point, and turns from the direction it should have."""
-GAP = 3.0  # px around a label
 
 
 class Body(NamedTuple):
@@ -83,34 +65,21 @@ class Body(NamedTuple):
     center: complex
     outline: Points
 
+    @property
+    def letter_place(self) -> complex:
+        """The place of the body's letter, beyond a corner away from the contact point, and off the
+        line of an arrow from behind."""
+        away = self.outline - 1j * self.center
+        corner = int(abs(away).argmax())
+        return complex(self.outline[corner] + LETTER_STEP * away[corner] / abs(away[corner]))
+
 
 class Arrow(NamedTuple):
-    """An arrow, its colour ("A", "B", "P" or ""), and the number beside it."""
+    """An arrow, and its colour ("A", "B", "P" or "")."""
 
     kind: str
     key: str
     points: Points
-    row: Row | None = None
-
-    @property
-    def letter(self) -> str:
-        """The symbol."""
-        return ARROWS[self.kind][0]
-
-
-class Label(NamedTuple):
-    """A text in three parts, the second a subscript; ``at`` is the middle of its left edge."""
-
-    parts: tuple[str, str, str]
-    key: str
-    size: float = 12.0
-    at: complex = 0j
-
-    @property
-    def box(self) -> complex:
-        """An upper estimate of the width, and i times the height, in px."""
-        width = SINGLE_EXTRA + CHARACTER_WIDTH * len("".join(self.parts))
-        return self.size * complex(width, 1.1)
 
 
 def draw(answer: Answer) -> str:
@@ -146,11 +115,12 @@ def draw(answer: Answer) -> str:
     shapes = {name: _body(name, values, case, turn) for name in "AB"}
     scale = REACH / max(abs(outline).max() for _, _, outline in shapes.values())
     bodies = {n: Body(words, scale * at, scale * line) for n, (words, at, line) in shapes.items()}
-    arrows = list(_arrows(bodies, values, rows, turn, scale))
+    arrows = list(_arrows(bodies, values, turn, scale))
     if "GA" in case.entries:
         normal = (turn * _unit(values["GA"])).conjugate()
         arrows.append(Arrow("plane", "", HALF_PLANE * normal * np.array([1j, -1j])))
-    labels, low, high = _labels(bodies, arrows)
+    lines = (*(body.outline for body in bodies.values()), *(arrow.points for arrow in arrows))
+    ink = np.concatenate([*lines, [body.letter_place for body in bodies.values()]])
     unit = float(view.map("DA")[0])
     amount = float(f"{REACH / 4 / scale / unit:.0e}")  # one digit times a power of ten
     return render(
@@ -159,9 +129,8 @@ def draw(answer: Answer) -> str:
         case=case,
         bodies=bodies,
         arrows=arrows,
-        labels=labels,
-        low=low,
-        high=high,
+        low=complex(ink.real.min(), ink.imag.min()),
+        high=complex(ink.real.max(), ink.imag.max()),
         scale=amount * unit * scale if bodies["A"].words != DISC else 0,  # a disc's size is none
         amount=f"{amount:g} {view.unit('DA')}",
         rows=rows,
@@ -217,11 +186,7 @@ def _body(name: str, values: Mapping[str, float], case: Case, turn: complex) -> 
 
 
 def _arrows(
-    bodies: Mapping[str, Body],
-    values: Mapping[str, float],
-    rows: Mapping[str, Row],
-    turn: complex,
-    scale: float,
+    bodies: Mapping[str, Body], values: Mapping[str, float], turn: complex, scale: float
 ) -> Iterator[Arrow]:
     """Yield the arrows on paper but for the contact plane."""
     fastest = max(x for name, x in values.items() if name in ("SA", "SB", "SAF", "SBF")) or 1.0
@@ -234,51 +199,12 @@ def _arrows(
             run = LONGEST_VELOCITY / fastest * velocity
             if abs(run) > SHORTEST:  # not of NaN
                 start = body.center + aside * run / abs(run) - run * (kind == "before")
-                row = rows.get(ARROWS[kind][1].format(name))
-                yield Arrow(kind, name, start + run * np.array([0, 1]), row)
-        for kind, radius in SPIN_RADII.items():
-            size = ARROWS[kind][1].format(name)
-            spin = values.get(size, 0.0)
+                yield Arrow(kind, name, start + run * np.array([0, 1]))
+        for kind, (spin_name, radius) in SPINS.items():
+            spin = values.get(spin_name.format(name), 0.0)
             if abs(spin) * LONGEST_VELOCITY / fastest * REACH / scale > SHORTEST:
                 middle, half = cmath.phase(body.center), math.copysign(SPIN_TURN, spin)
-                arc = _arc(radius, middle + half, middle - half)
-                yield Arrow(kind, name, body.center + arc, rows.get(size))
+                yield Arrow(kind, name, body.center + _arc(radius, middle + half, middle - half))
         if name == "A" and values.get("P"):
             run = IMPULSE_LENGTH * values["MA"] / values["P"] * (after - before)
-            yield Arrow("impulse", "P", run * np.array([0, 1]), rows.get("P"))
-
-
-def _labels(
-    bodies: Mapping[str, Body], arrows: list[Arrow]
-) -> tuple[list[Label], complex, complex]:
-    """Return a label for each body and arrow, placed where it covers nothing, else where it covers
-    least, and the corners of everything on paper."""
-    steps = np.linspace(0, 1, LINE_POINTS)
-    ink = np.concatenate(
-        [
-            np.interp(steps, np.linspace(0, 1, len(line)), line)
-            for line in (*(b.outline for b in bodies.values()), *(a.points for a in arrows))
-        ]
-    )
-    costs = np.ones(len(ink))
-    unplaced = [(Label((name, "", ""), name, 18.0), 0j, b.center) for name, b in bodies.items()]
-    for arrow in arrows:
-        body = arrow.key.lower() if arrow.key in bodies else ""
-        parts = (arrow.letter, body, f" {arrow.row.text}" if arrow.row else "")
-        ends = arrow.points[1::-1] if arrow.kind == "before" else arrow.points[-2:]
-        unplaced.append((Label(parts, arrow.key), *ends))
-    labels = []
-    for label, start, end in unplaced:
-        half = label.box / 2
-        rays = np.exp(1j * (cmath.phase(end - start) + LABEL_TURNS))
-        centers = end + (half.real + LABEL_REACHES) * rays.real
-        centers = (centers + 1j * (half.imag + LABEL_REACHES) * rays.imag).ravel()
-        gaps = ink - centers[:, None]
-        covered = (abs(gaps.real) < half.real + GAP) & (abs(gaps.imag) < half.imag + GAP)
-        center = centers[(covered @ costs).argmin()]  # the first of the best
-        labels.append(label._replace(at=center - half.real))
-        x, y = (np.arange(-end, end + TEXT_STEP, TEXT_STEP) for end in (half.real, half.imag))
-        ink = np.append(ink, center + x + 1j * y[:, None])
-        costs = np.append(costs, np.full(len(ink) - len(costs), TEXT_COST))
-    x, y = ink.real, ink.imag
-    return labels, complex(x.min(), y.min()), complex(x.max(), y.max())
+            yield Arrow("impulse", "P", run * np.array([0, 1]))
