@@ -214,7 +214,8 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     an input is in doubt, and there are no more differences than an alteration has. It is identical
     only if the cells were measured against the numbers that the program prints. A row that is there
     twice was measured once; where labels are exchanged the program prints other numbers for the
-    text than were measured, and cells of labels differ.
+    text than were measured, and cells of labels differ. Rows of a text may have been rearranged,
+    those of a picture are as they were printed: one out of order differs if all else is exact.
     """
     first, last = (transcript.line_cell(offset)[0] for offset in result.span)
     cells = [cell for cell in transcript.cells if first <= cell.line <= last]
@@ -225,6 +226,8 @@ def _gate_verdict(result: Verification, transcript: Transcript, marks: Sequence[
     printed = _printed_numbers(result)
     is_measured = any(_printed_numbers(sheet) == printed for sheet in transcript.sheets)
     verdict = result.verdict
+    if {finding.kind for finding in result.findings} == {Kind.DISORDER}:
+        verdict = Verdict.DIFFERS
     if verdict is Verdict.DIFFERS:
         adverse = {f.name for f in result.findings if VERDICTS[f.kind] is Verdict.DIFFERS}
         numbers = {f.name for f in result.findings if f.kind is Kind.NUMBER}

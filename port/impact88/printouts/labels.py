@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -128,7 +129,8 @@ def _order(
 ) -> tuple[float, list[Anchor]]:
     """Return the cheapest way to place labels on the page, and its cost (Viterbi, 1967).
 
-    A label that two rows have is that of the row in order; one in another's place is that one.
+    A label that two rows have is that of the row in order; one in another's place is that one. Two
+    labels beside each other that were exchanged are each in the other's place.
     """
     costs = SLIGHT * np.arange(len(LABELS))
     ways = []
@@ -140,12 +142,19 @@ def _order(
         steps = sums[:, None] + _STEPS
         ways.append(steps.argmin(axis=0))
         costs = steps.min(axis=0)
-    anchors = []
     at = int(sums.argmin())
+    order: list[int] = []
     for k in range(len(labels) - 1, -1, -1):
-        anchors.append(Anchor(LABELS[at], *labels[k]))
+        order.insert(0, at)
         at = int(ways[k - 1][at]) if k else 0
-    return float(sums.min()), anchors[::-1]
+    cost = float(sums.min())
+    for k, (first, second) in enumerate(pairwise([*order])):
+        is_single = order.count(first) == order.count(second) == 1
+        is_exchanged = first == second + 1 and LABELS[first].row == LABELS[second].row
+        if is_single and is_exchanged:
+            order[k : k + 2] = second, first
+            cost -= WRONG
+    return cost, [Anchor(LABELS[at], *label) for at, label in zip(order, labels, strict=True)]
 
 
 @lru_cache(maxsize=10_000)
