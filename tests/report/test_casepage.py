@@ -19,6 +19,7 @@ from impact88.report.exhibits import examine
 pytest.importorskip("jinja2")
 from impact88.pictures.verdict import PictureVerification
 
+HEADINGS = {"case": "", "examiner": "J. Doe", "date": ""}
 HOSTILE = '"><script>alert(1)</script>\x1b[2J'
 
 
@@ -66,7 +67,7 @@ def test_a_page_loads_nothing_and_escapes_what_it_is_given() -> None:
     case = case_of(title=HOSTILE, case=HOSTILE, examiner=HOSTILE, date=HOSTILE, MA_source=HOSTILE)
     printout = impact88.run(impact88.sample(1)).page.replace("VAX=", f"{HOSTILE} VAX=")
     page = case_page(ask(case)) + verification_page(
-        examine(HOSTILE, printout.encode()), case=HOSTILE, examiner=HOSTILE
+        examine(HOSTILE, printout.encode()), dict.fromkeys(HEADINGS, HOSTILE)
     )
     assert "<script" not in page
     assert page.count("&lt;script") > 5
@@ -79,7 +80,7 @@ def test_findings_are_marked_in_the_text() -> None:
     (exhibit,) = examine("paper.txt", page.replace("\n", "\r\n").encode())
     assert exhibit.result.verdict.name == "DIFFERS"
     assert "".join(text for text, _, _ in exhibit.pieces()) == exhibit.result.text.strip()
-    html = verification_page([exhibit], examiner="J. Doe")
+    html = verification_page([exhibit], HEADINGS)
     assert re.search(r'<mark class="differs" title="[^"]*-13.263[^"]*">-13.268</mark>', html)
     assert "paper.txt, printout 1" in html
     assert exhibit.digest in html
@@ -97,7 +98,7 @@ def test_findings_are_marked_in_the_text() -> None:
 )
 def test_a_page_has_the_names_of_the_printout(old: str, new: str, words: str) -> None:
     page = impact88.run(impact88.sample(1)).page.replace(old, new)
-    assert words in verification_page(examine("paper.txt", page.encode()))
+    assert words in verification_page(examine("paper.txt", page.encode()), HEADINGS)
 
 
 def test_findings_are_marked_on_the_picture() -> None:
@@ -107,7 +108,7 @@ def test_findings_are_marked_on_the_picture() -> None:
     corners = np.array([[1, 1], [9, 1], [9, 9], [1, 9.0]])
     boxes = (corners,) * len(exhibit.result.findings)
     picture = PictureVerification(1, exhibit.result, boxes, grey=np.full((50, 100), 255.0))
-    html = verification_page([replace(exhibit, page=picture)])
+    html = verification_page([replace(exhibit, page=picture)], HEADINGS)
     assert re.search(r'<image href="data:image/png;base64,[^"]+" width="100" height="50"/>', html)
     assert '<polygon class="differs" points="1,1 9,1 9,9 1,9 ">' in html
     assert "The text as read from the picture" in html
@@ -130,8 +131,8 @@ def test_the_ending_decides_what_is_written(name: str, start: bytes, tmp_path: P
 def test_nothing_is_written_of_what_cannot_be_drawn(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="expected -o FILE"):
         write(ask(case_of()), str(tmp_path / "a.pdf"))
-    large = ask(case_of("side", UX="1e200"))
-    assert "Not drawn: a value is too large" in case_page(large)
-    with pytest.raises(UserError, match="too large"):
-        write(large, str(tmp_path / "a.svg"))
+    contradiction = ask(case_of("points", SAF="900", HAF="0"))
+    assert "Not drawn: missing MA" in case_page(contradiction)
+    with pytest.raises(UserError, match="missing MA"):
+        write(contradiction, str(tmp_path / "a.svg"))
     assert list(tmp_path.iterdir()) == []

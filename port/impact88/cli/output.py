@@ -1,11 +1,9 @@
-"""Output of commands: JSON with the version of its form, progress, remarks."""
+"""Output of commands: JSON with the version of its form, remarks."""
 
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..errors import note
@@ -45,21 +43,6 @@ def _json_value(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
     return dict(value) if hasattr(value, "keys") else asdict(value)
-
-
-@contextmanager
-def progress(what: str) -> Iterator[Callable[[int, float | None], None]]:
-    """Context of a function that shows the steps done, or the fraction if it is known, on a line of
-    stderr; nothing where stderr is no terminal."""
-
-    def update(done: int, fraction: float | None) -> None:
-        if sys.stderr.isatty():
-            text = f"{done:,}" if fraction is None else f"{fraction:.0%}"
-            print(f"\r{what}: {text}", end="", file=sys.stderr, flush=True)
-
-    yield update
-    if sys.stderr.isatty():
-        print(file=sys.stderr)
 
 
 def say(command: str, remarks: Iterable[str]) -> None:

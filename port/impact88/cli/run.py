@@ -14,9 +14,10 @@ from __future__ import annotations
 import sys
 
 from ..apple.applesoft.console import Console, EndOfInput
+from ..decimals import to_text
 from ..errors import UserError, note
 from ..files import typed_line
-from ..names import SCENE, VELOCITIES
+from ..names import SCENE, VELOCITIES, missing
 from ..program.run import Run, page, run, start
 from ..program.scene import Scene, published_data, sample
 from .options import CASE, JSON, OUTPUT, Args, case_of, choice
@@ -52,15 +53,20 @@ def _scene(args: Args) -> Scene:
         return sample(int(args.sample))
     case = case_of(args)
     say("run", case.remarks)
-    if absent := [name for name in SCENE if name not in case.texts]:
-        from ..report.answers import ask, scene_case
+    scene = dict(case.texts)
+    if absent := [name for name in SCENE if name not in scene]:
+        from ..report.answers import ask
 
-        case = scene_case(ask(case))
+        impact = ask(case).scene
+        if unknown := [name for name in absent if name not in impact]:
+            raise UserError(f"the impact found leaves inputs open: {missing(unknown)}", case.source)
+        # values known within limits are adjusted
+        scene |= {name: to_text(impact[name]) for name in (*absent, *case.ranges)}
         note("run", f"as impact88 solve finds them: {' '.join(absent)}")
     if case.omitted:
-        names = [n if case.texts[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
+        names = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
         note("run", f"0 is typed for what is not given: {' '.join(names)}")
-    return Scene(case.texts, None, case.source)
+    return Scene(scene, None, case.source)
 
 
 def _ask(arithmetic: str) -> Run:

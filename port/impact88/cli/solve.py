@@ -35,7 +35,7 @@ from .options import (
     printing_to,
     texts,
 )
-from .output import progress, say
+from .output import say
 
 WRITES = True
 TABLES = (".csv", ".tsv", ".jsonl", ".ndjson", ".parquet", ".xlsx")
@@ -82,17 +82,15 @@ def _solve_table(args: Args, is_table: bool) -> int:
     is_case = args.file or args.sample or args.set
     case = case_of(args) if is_case or not is_table else Case.of({}, view=view)
     ranges = pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT")
-    with progress("solve") as update:
-        results = solve_table(
-            table if is_table else sweep_table(case, ranges),
-            args.output,
-            names_of(args.results, RESULTS, "--results"),
-            case=case,
-            replaced=[*changes_of(args)] if is_table else (),
-            arithmetic=args.arithmetic or "float64",
-            results_only=args.results_only,
-            progress=update,
-        )
+    results = solve_table(
+        table if is_table else sweep_table(case, ranges),
+        args.output,
+        names_of(args.results, RESULTS, "--results"),
+        case=case,
+        replaced=[*changes_of(args)] if is_table else (),
+        arithmetic=args.arithmetic or "float64",
+        results_only=args.results_only,
+    )
     remarks = dict.fromkeys([*case.remarks, *results.remarks])
     say("solve", [*remarks, *results.listed])
     return int(bool(results.bad or results.ended))

@@ -75,7 +75,7 @@ def main(args: options.Args) -> int:
 
         headings = {name: getattr(args, name) for name in HEADINGS}
         with options.printing_to(args.report):
-            print(verification_page(exhibits, **headings), end="")
+            print(verification_page(exhibits, headings), end="")
     return int(any(item.result.verdict is not Verdict.IDENTICAL for item in exhibits))
 
 

@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from heapq import nlargest
 from typing import TYPE_CHECKING, Any
 
 from .. import status
@@ -23,7 +22,6 @@ from ..names import (
     RESULTS,
     SCENE,
     VELOCITIES,
-    check_names,
     missing,
     quantity,
 )
@@ -38,8 +36,6 @@ BACKWARD = tuple(
     "SA HA SB HB SAF HAF SBF HBF DVA PDOFA DVB PDOFB E MUP EM WA WB WAF WBF LOSS".split()
 )
 """Results of a reconstruction, the most asked first."""
-FORCES = ("FA", "FM2", "FM3")
-"""Results of a reconstruction to which the duration of contact is given."""
 COMPONENTS = "DVAF DVAR DVBF DVBR P RR0 EL DT CAX CAY CBX CBY".split()
 ALL = (*dict.fromkeys((*FORWARD, *BACKWARD, *VELOCITIES, *RESULTS, *COMPONENTS)),)
 """Every result."""
@@ -47,13 +43,12 @@ DRAWN = (*FINAL_VELOCITIES, *"SA SB SAF SBF DVA DVB P PDOFA PDOFB".split())
 """Results that every drawing shows."""
 POINTS = "CAF CAL CBF CBL".split()
 UNUSABLE = (
-    "no impact has these values; expected masses and inertias above 0, and at most one barrier "
-    "(MB = inf, IB = inf), at rest"
+    "no impact has these values; expected M = 6 for bodies or 4 for point masses, masses and "
+    "inertias above 0, and at most one barrier (MB = inf, IB = inf), at rest"
 )
 CLOCK_HOUR = 30.0  # degrees
 DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
 NOISE = 1e-9  # width of an interval over the value: so much is rounding
-MAX_DRIVERS = 3  # values named as those that make a result uncertain
 MIN_SHARE = 0.05  # of a result's variance, from which a value is named
 
 
@@ -71,8 +66,8 @@ class Row:
         The same in other words, "10 o'clock".
     interval : str
         The 90 % interval as every reader sees it, "28.1 .. 31.5"; "" for an exact number.
-    value : float or None
-        A result, not rounded; None where only an interval is known.
+    value : float
+        A result, not rounded; NaN where only an interval is known.
     ends : tuple of float or None
         The ends of the interval, not rounded.
     """
@@ -83,7 +78,7 @@ class Row:
     text: str
     note: str = ""
     interval: str = ""
-    value: float | None = None
+    value: float = math.nan
     ends: tuple[float, float] | None = None
 
 
@@ -121,13 +116,13 @@ class Answer:
     asked: str
     question: str
     found: Mapping[str, Row]
-    case: Case = field(repr=False)
+    case: Case
     evidence: str = ""
     possible: bool = True
     sections: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    scene: Mapping[str, float] = field(default_factory=dict, repr=False)
+    scene: Mapping[str, float] = field(default_factory=dict)
     alternatives: tuple[Answer, ...] = ()
 
     @property
@@ -172,10 +167,6 @@ def ask(case: Case, wanted: Sequence[str] = ()) -> Answer:
     UserError
         For a case that gives too little, and for values that no impact has.
     """
-    equations = case.entries["M"].value
-    if equations not in (4, 6):
-        message = f"M is {equations:g}; expected 6 for bodies or 4 for point masses"
-        raise UserError(message, case.place("M"))
     is_scene = {*case.entries} <= {*SCENE, *POINTS}
     if is_scene and not evaluate(case.numbers, FINAL_VELOCITIES[:4])[1]:
         return _forward(case, wanted)
@@ -185,13 +176,11 @@ def ask(case: Case, wanted: Sequence[str] = ()) -> Answer:
 def _forward(case: Case, wanted: Sequence[str]) -> Answer:
     """Return the answer to a complete scene, with 90 % intervals where it has tolerances."""
     names = wanted or FORWARD
-    if math.isinf(case.numbers["MB"]) and not wanted:  # a barrier
-        names = [name for name in names if "B" not in name]
     values, lacking = evaluate(case.numbers, (*names, *DRAWN, "STATUS", "fit"))
-    numbers = {name: float(value) for name, value in values.items()}
-    if numbers.pop("fit", 1.0) == 0:
+    numbers = {name: float(x) for name, x in values.items() if not math.isnan(x)}
+    if numbers.get("fit") == 0:
         raise UserError(UNUSABLE, case.source)
-    results = {n: numbers[n] for n in names if not math.isnan(numbers.get(n, math.nan))}
+    results = {name: numbers[name] for name in names if name in numbers}
     remarks = _left_out(case, names, results, lacking)
     question = "velocities after the impact, from a complete scene"
     answer = forward_answer(case, question, results, int(numbers["STATUS"]), remarks)
@@ -222,15 +211,18 @@ def _left_out(
     case: Case,
     names: Sequence[str],
     results: Collection[str],
-    lacking: Mapping[str, Sequence[str]] = {},
+    lacking: Mapping[str, Sequence[str]],
 ) -> list[str]:
     """Return a remark on the results that cannot be given. Raises UserError if none can."""
     absent = [name for name in names if name not in results]
+    if not absent:
+        return []
     inputs = dict.fromkeys(name for n in absent for name in lacking.get(n, ()))
     reason = missing([*inputs]) if inputs else "not defined for this impact, or left open"
-    if absent and not results:
-        raise UserError(f"{' '.join(absent)}: {reason}; expected other --results", case.source)
-    return [f"{' '.join(absent)} left out: {reason}"] if absent else []
+    remark = f"{' '.join(absent)} left out: {reason}"
+    if results:
+        return [remark]
+    raise UserError(remark, case.source)
 
 
 def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
@@ -244,20 +236,19 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
         name: case.numbers.get(name) if math.isnan(amount.value) else amount
         for name, amount in sorted(case.entries.items())
     }
-    outputs = [name for name in values if name in BOUNDED]
     sample = bounds(
         inputs,
-        outputs,
+        [name for name in values if name in BOUNDED],
         samples=DRAWS,
         correlations=case.correlations,
         limits=False,  # the answer has intervals only
     )
-    intervals, squares = {}, {}
+    intervals, variances = {}, {}
     for name, bound in sample.outputs.items():
-        width = bound.interval[1] - bound.interval[0]
-        if width > NOISE * abs(bound.nominal):
-            intervals[name] = bound.interval
-            squares[name] = {n: effect * effect for n, effect in bound.drivers.items()}
+        low, high = bound.interval
+        if high - low > NOISE * abs(bound.nominal):
+            intervals[name] = low, high
+            variances[name] = {driver: effect**2 for driver, effect in bound.drivers.items()}
     warnings = [
         f"in {100 * fraction:.2g} % of the draws {text}"
         for name, fraction in sample.warnings.items()
@@ -268,33 +259,33 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
         asked="bounds",
         question=f"{answer.question} with limits of {', '.join(case.ranges)}",
         found=numbers_of(case, values, intervals),
-        sections={"depends": _dependences(squares)},
+        sections={"depends": _dependences(variances, intervals)},
         remarks=(*answer.remarks, words.precision(sample)),
         warnings=(*answer.warnings, *warnings),
     )
 
 
-def _dependences(variances: Mapping[str, Mapping[str, float]]) -> tuple[str, ...]:
+def _dependences(
+    variances: Mapping[str, Mapping[str, float]], names: Iterable[str]
+) -> tuple[str, ...]:
     """Return which inputs make results uncertain: "DVA DVB: UX 62 %, MU 20 %".
 
     Parameters
     ----------
     variances : mapping of str to mapping of str to float
-        Parts of each result's variance, in any unit, by input.
+        Parts of each result's variance by input, the largest first, in any unit.
+    names : iterable of str
+        The results.
     """
     results: dict[str, list[str]] = {}
-    for result, parts in variances.items():
-        total = sum(parts.values()) or 1.0
-        largest = nlargest(MAX_DRIVERS, parts, key=parts.__getitem__)
-        inputs = [n for n in largest if parts[n] >= MIN_SHARE * total and [*parts] != [result]]
-        words = ", ".join(f"{name} {100 * parts[name] / total:.0f} %" for name in inputs)
-        results.setdefault(words, []).append(result)
-    return tuple(f"{' '.join(names)}: {words}" for words, names in results.items() if words)
-
-
-def unit_of(case: Case, name: str) -> str:
-    """Return the unit in which a case shows a quantity; "" for ratios and without named units."""
-    return case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(quantity(name).unit, "")
+    for result in names:
+        parts = variances.get(result, {})
+        total = sum(parts.values())
+        if {*parts} - {result}:
+            large = [name for name, part in parts.items() if part >= MIN_SHARE * total]
+            text = ", ".join(f"{name} {100 * parts[name] / total:.0f} %" for name in large)
+            results.setdefault(text, []).append(result)
+    return tuple(f"{' '.join(group)}: {words}" for words, group in results.items())
 
 
 def numbers_of(
@@ -327,11 +318,11 @@ def numbers_of(
         rows[name] = Row(
             name,
             quantity(name).meaning,
-            unit_of(case, name),
+            case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(rules[name], ""),
             text,
             clock(value) if text and "PDOF" in name else "",
             " .. ".join(round_number(end, decimals) for end in ends or ()),
-            value if text else None,
+            value,
             ends,
         )
     return rows
@@ -351,18 +342,13 @@ def clock(degrees: float) -> str:
 
 def _reconstruct(case: Case, wanted: Sequence[str]) -> Answer:
     """Return the impact that agrees best with what is known, with its alternatives."""
-    from ..reconstruction.answer import KNOWABLE, reconstruct
+    from ..reconstruction.answer import reconstruct
 
     # random draws do not depend on the file's order
-    entries = {name: amount for name, amount in sorted(case.entries.items()) if name != "TF"}
-    check_names(entries, KNOWABLE, "value that a reconstruction can use", case.source)
-    duration = getattr(case.entries.get("TF"), "value", None)
     try:
-        impacts = reconstruct(entries, samples=DRAWS, contact_time=duration)
-    except UserError as error:
+        impacts = reconstruct(dict(sorted(case.entries.items())), samples=DRAWS)
+    except (UserError, OverflowError) as error:  # a value is too large
         raise UserError(str(error), case.source) from None
-    except OverflowError:
-        raise UserError("a value is too large for a reconstruction", case.source) from None
     first, *alternatives = [_impact(case, impact, wanted) for impact in impacts]
     refusals = tuple(
         "another impact that agrees with the values, rejected: "
@@ -391,17 +377,12 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
             warnings += status.sentences(int(more["STATUS"]) & ~status.IMPOSSIBLE)
     is_exact = {*case.entries} - {*case.ranges}
     names = wanted or [name for name in BACKWARD if name not in is_exact]
-    results = [n for n in (*names, *FORCES) if n in values or n in impact.intervals]
+    results = [n for n in names if n in values or n in impact.intervals]
     remarks = list(words.remarks(impact))
     if impact.verdict == "contradictory":  # the nearest impact would be taken for an answer
         scene, results = {}, []
     else:
-        remarks += _left_out(case, wanted, results)
-    fractions = {
-        result: {words.entry(impact, name): x for name, x in parts.items()}
-        for result, parts in impact.drivers.items()
-        if result in results
-    }
+        remarks += _left_out(case, wanted, results, {})
     return Answer(
         "reconstruct",
         words.question(impact, case.derived),
@@ -410,7 +391,7 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
         evidence=words.evidence(impact, view),
         possible=not impact.is_adverse,
         sections={
-            "depends": _dependences(fractions),
+            "depends": _dependences(impact.drivers, results),
             "checked": words.checks(impact, view),
             "assumed": words.assumptions(impact),
             "helps": words.advice(impact),
@@ -419,20 +400,3 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
         warnings=tuple(warnings),
         scene={**scene, **values} if scene else {},
     )
-
-
-def scene_case(answer: Answer) -> Case:
-    """Return the impact of an answer as a complete scene; exact entries stay as written.
-
-    Raises
-    ------
-    UserError
-        If the answer leaves an input open."""
-    case, scene = answer.case, answer.scene
-    if absent := [name for name in SCENE if name not in scene]:
-        raise UserError(f"the impact found leaves inputs open: {missing(absent)}", case.source)
-    changes = {name: "" for name in case.entries if name not in SCENE}
-    for name in SCENE:
-        if name in case.ranges or name not in case.written:
-            changes[name] = case.view.shown_text(name, scene[name])
-    return case.with_(changes)

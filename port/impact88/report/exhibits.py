@@ -16,9 +16,6 @@ if TYPE_CHECKING:
 
 PICTURE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"%PDF-")
 """First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
-DOUBT = "doubt"  # look of a mark: not read exactly
-LOOKS = {kind: "differs" for kind, verdict in VERDICTS.items() if verdict is Verdict.DIFFERS}
-LOOKS[Kind.FOREIGN] = "foreign"
 
 
 @dataclass(frozen=True)
@@ -61,7 +58,14 @@ class Exhibit:
             stop = min(finding.stop, end)
             if place <= finding.start <= stop:
                 yield text[place : finding.start], "", ""
-                look = LOOKS.get(finding.kind, DOUBT)
+                is_adverse = VERDICTS[finding.kind] is Verdict.DIFFERS
+                look = (
+                    "differs"
+                    if is_adverse
+                    else "foreign"
+                    if finding.kind is Kind.FOREIGN
+                    else "doubt"
+                )
                 yield text[finding.start : stop] or "‸", look, words.sentence_of(finding)
                 place = stop
         yield text[place:end], "", ""
@@ -93,19 +97,17 @@ def examine(
     UserError
         For a file that cannot be read, and if no printout is found.
     """
-    pages: list[tuple[Verification, PictureVerification | None]]
+    digest = sha256(data).hexdigest()
     if data.startswith(PICTURE_STARTS):
         if listing:
             raise UserError("--listing goes with texts, not with pictures", name)
-        for module in ("PIL", "scipy"):
-            library(module, "pictures", "a picture")
-        from ..pictures import verify_picture
-
-        pages = [(page.verification, page) for page in verify_picture(data, name, scene=given)]
-    else:
-        try:
-            pages = [(result, None) for result in verify(data, given, listing or None)]
-        except UserError as error:
-            raise UserError(str(error).removeprefix("text: "), name) from None
-    digest = sha256(data).hexdigest()
-    return [Exhibit(name, k, *page, digest) for k, page in enumerate(pages, 1)]
+        pictures = library("impact88.pictures", "pictures", "a picture")
+        pages = pictures.verify_picture(data, name, scene=given)
+        return [
+            Exhibit(name, k, page.verification, page, digest) for k, page in enumerate(pages, 1)
+        ]
+    try:
+        results = verify(data, given, listing or None)
+    except UserError as error:
+        raise UserError(str(error).removeprefix("text: "), name) from None
+    return [Exhibit(name, k, result, None, digest) for k, result in enumerate(results, 1)]

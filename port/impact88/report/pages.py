@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import platform
 from functools import lru_cache
 from typing import TYPE_CHECKING
+
+import numpy
 
 from ..cases.scenefile import INPUTS
 from ..errors import library, printable
 from ..printouts import words
+from ..version import __version__
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+VERSIONS = f"impact88 {__version__}, numpy {numpy.__version__}, Python {platform.python_version()}"
 
 
 @lru_cache(maxsize=1)
@@ -25,7 +31,7 @@ def environment() -> Environment:
         undefined=jinja2.StrictUndefined,
     )
     templates.filters["printable"] = _displayed_text
-    templates.globals.update(words=words, inputs=INPUTS)
+    templates.globals.update(words=words, inputs=INPUTS, versions=VERSIONS)
     return templates
 
 

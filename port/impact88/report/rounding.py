@@ -52,9 +52,7 @@ def decimals_in(rule: str, group: Iterable[float], width: float = 0.0) -> int:
     """
     largest = max((abs(x) for x in group if math.isfinite(x)), default=0.0)
     decimals = DECIMALS.get(rule, decimals_of(largest))
-    if not width or not math.isfinite(width):
-        return decimals
-    return min(decimals_of(width / 2, OF_INTERVAL), decimals + EXTRA)
+    return min(decimals_of(width / 2, OF_INTERVAL), decimals + EXTRA) if width else decimals
 
 
 def round_number(value: float, decimals: int) -> str:

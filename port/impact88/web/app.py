@@ -105,7 +105,7 @@ def verify() -> str:
 def verification() -> Response:
     """Return the report on the printouts."""
     headings = {name: request.form.get(name, "") for name in HEADINGS[1:]}
-    return _report(verification_page(_exhibits(), **headings))
+    return _report(verification_page(_exhibits(), headings))
 
 
 def collision() -> str:
