@@ -142,6 +142,7 @@ SAMPLES = {k: impact88.run(impact88.sample(k)).page for k in (1, 2, 3)}
     [
         (1, "DA= 7.59", "DA= 9.65"),
         (2, "MB= 95.8", "MB= 98.5"),
+        (2, "DB= 0", "DB= 1"),  # two results differ
         (2, "MA= 143.5", "MA= 455.1"),
         (3, "EM= -.9", "EM= -.2"),
         (1, "VY= 25.15", "VY= 20.00"),
@@ -383,6 +384,26 @@ def test_numbers_without_labels_are_no_spins() -> None:
 )
 def test_a_number_with_a_hole_is_open(old: str, new: str, verdict: Verdict) -> None:
     assert single(PAGE.replace(old, new)).verdict is verdict
+
+
+@pytest.mark.parametrize("part", [slice(0, 1), slice(-1, None), slice(0, 2), slice(-2, None)])
+def test_lost_characters_that_leave_blanks_accuse_nothing(part: slice) -> None:
+    """The beginning or the end of a number did not print. How far the first angle is from the
+    margin is not known."""
+    for name, number in single(BODY).numbers.items():
+        lost = number.printed[part]
+        torn = [*number.printed]
+        torn[part] = " " * len(lost)
+        if "".join(torn).strip() and (name != "PA" or part.start != 0):
+            text = BODY[: number.start] + "".join(torn) + BODY[number.stop :]
+            assert single(text).verdict is Verdict.INCOMPLETE, (name, torn)
+
+
+def test_blanks_count_only_where_they_are_wider_than_on_the_rest_of_the_page() -> None:
+    wide = PAGE.replace(" ", "   ")
+    assert single(wide).verdict is Verdict.IDENTICAL
+    for old, new in (("IA=   3728", "IA=   37"), ("-13.263", "13.263"), ("-38.7", "38.7")):
+        assert single(wide.replace(old, new)).verdict is Verdict.DIFFERS
 
 
 def test_a_reply_torn_at_the_margin_is_open() -> None:

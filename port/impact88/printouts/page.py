@@ -51,6 +51,13 @@ TITLES = tuple(
 """Names of the rows in words: its labels."""
 TITLES = (*TITLES[:ANGLE_ROW], "five angles", *TITLES[ANGLE_ROW + 1 :])
 
+BLANKS = {
+    match[1]: (len(text[: match.start()]) - len(text[: match.start()].rstrip()), len(match[2]))
+    for text in ROWS
+    for match in re.finditer(r"{(\w+)}( *)", text)
+}
+"""Blanks before and after each number."""
+
 
 class Cell(NamedTuple):
     """A place of the page.

@@ -6,6 +6,7 @@ two anchors is aligned with the cells between them.
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -23,6 +24,7 @@ from .numerals import PRINTED, as_printed, readings
 from .page import (
     ANGLES,
     ASTERISKS,
+    BLANKS,
     CELLS,
     HEADING,
     MANY,
@@ -44,7 +46,6 @@ NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
 ENDING = re.compile(r"ZERODETERMINANT|\?[A-Z']{5,30}ERROR(?:IN[0-9]+)?")
-LINE_END = re.compile(r"[^\S\n]*(\r?\n|$)")
 _NO_NUMBER = re.compile("[^-0-9.E,+]")
 MACHINE_READ = 3
 """Misread characters of labels and damaged numbers from which a machine read the page."""
@@ -169,10 +170,27 @@ class Reading:
             places[SLOT_CELLS[name]] = min(start, first), max(stop, last)
         return places
 
-    def ends_line(self, name: str) -> bool:
-        """Return True for a number that nothing follows in its line: it may have been cut."""
-        slot = self.slots.get(name)
-        return bool(slot and LINE_END.match(self.text, slot.glyphs[-1].offset + 1))
+    @cached_property
+    def extra_blanks(self) -> dict[str, tuple[float, float]]:
+        """How many more blanks there are before and after each number, for each that the program
+        prints, than at most numbers of the page; infinite at the edges of a line.
+
+        Where there are more, the number may have lost its beginning, or its end."""
+        text = f"{self.text}\n"
+        extra = {}
+        for name, slot in self.slots.items():
+            before, after = text[: slot.glyphs[0].offset], text[slot.glyphs[-1].offset + 1 :]
+            gaps = before[len(before.rstrip()) :], after[: len(after) - len(after.lstrip())]
+            extra[name] = [
+                math.inf if gap.strip(" \t") else (len(gap) - due) / max(1, due)
+                for gap, due in zip(gaps, BLANKS[name], strict=True)
+            ]
+        usual = np.maximum(0, np.median([*extra.values()], axis=0)).tolist()
+        return {name: (front - usual[0], end - usual[1]) for name, (front, end) in extra.items()}
+
+    def is_apart(self, name: str) -> bool:
+        """Return True for a number with more blanks beside it, within its line."""
+        return any(0 < extra < math.inf for extra in self.extra_blanks.get(name, ()))
 
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and after the last character of the page's own."""
@@ -383,9 +401,10 @@ class _Reader:
             if (note := WORDS.search(text)) and name not in MANY:
                 foreign.update(members[note.start() :])
                 members = members[: note.start()]
-            slot = Slot([glyphs[i] for i in members], label, not is_whole)
-            slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
             if members:
+                slot = Slot([glyphs[i] for i in members], label, not is_whole)
+                slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
+                slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
                 slots[name] = slot
         indices = _within_page(glyphs, foreign, before is FIRST, after is LAST)
         for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):

@@ -218,7 +218,8 @@ class _Search:
             return scenes
         texts = {name: scene.inputs[name].printed for name in self.clean}
         read = {name: Decimal(text) for name, text in texts.items()}
-        ends = [name for name in read if self.reading.ends_line(name)]
+        extra = self.reading.extra_blanks
+        ends = [name for name in read if name in extra and extra[name][1] > 0]
         longer = {name: [read[name].scaleb(k) for k in range(MAX_DIGITS)] for name in ends}
         options = self._vary(scene, read, 0)
         options += self._vary(scene, self._find_least(scene, longer), MAX_DIGITS)

@@ -14,10 +14,9 @@ from difflib import SequenceMatcher
 from types import MappingProxyType
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import LOOKALIKES, WIDE_GAP, Glyph, plain_char
+from .glyphs import LOOKALIKES, Glyph, plain_char
 from .numerals import TYPED, as_printed, is_same_value, readings
 from .page import (
-    ANGLES,
     ASTERISKS,
     CELLS,
     INPUTS,
@@ -114,7 +113,10 @@ def _either(
     printed = {scene.changed: scene.fields[scene.changed] for scene in scenes}
     others = [finding for finding in findings if finding.name not in printed]
     is_sure = any(f.kind is Kind.NUMBER for f in findings if f not in others)
-    is_sure &= not any(comparison.is_cut(name, text) for name, text in printed.items())
+    is_sure &= not any(
+        comparison.is_cut(name, text) or comparison.reading.is_apart(name)
+        for name, text in printed.items()
+    )
     kind = Kind.EITHER if is_sure else Kind.OPEN
     return others + [
         comparison.number_finding(kind, name)._replace(printed=text)
@@ -291,17 +293,17 @@ class Comparison:
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def is_cut(self, name: str, printed: str) -> bool:
-        """Return True for the beginning of a number at the end of its line, or its end after 0 or
-        a wide gap."""
-        slot = self.reading.slots[name]
-        read = LEADING_ZERO.sub("", slot.text)
-        is_end = CUT_NUMBER.match(read) or (name not in ANGLES and slot.glyphs[0].gap >= WIDE_GAP)
-        if is_end and printed.endswith(read.lstrip("-")):
+        """Return True for the beginning or the end of a printed number where the rest of it may
+        have been lost."""
+        read = LEADING_ZERO.sub("", self.reading.slots[name].text)
+        front, end = self.reading.extra_blanks[name]
+        if front > 0 and printed.endswith(read):
+            return True
+        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
             return True
         turns = HALF_TURNS if printed and name == "GA" else ()
         numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
-        is_beginning = any(number.startswith(read) for number in numbers)
-        return is_beginning and self.reading.ends_line(name)
+        return end > 0 and any(number.startswith(read) for number in numbers)
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
@@ -391,6 +393,7 @@ class Comparison:
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         foreign = "".join(finding.read for finding in findings if finding.kind is Kind.FOREIGN)
         is_unsure = is_machine_read or any(map(_is_unsure, findings))
+        is_unsure |= any(map(self.reading.is_apart, INPUTS))
         is_unsure |= sum(map(str.isdigit, foreign)) >= MAX_FOREIGN_DIGITS
         is_open = is_unsure and len(numbers) + len(unread) > MAX_ALTERED
         is_open |= any(finding.name in INPUTS for finding in unread)
@@ -445,9 +448,10 @@ def _count_same(read: str, printed: str) -> int:
 
 
 def _is_slight(finding: Finding) -> bool:
-    """Return True for a number that differs in nothing but a lost point."""
+    """Return True for a number that was read, and differs in nothing but a lost point."""
     read = "".join(finding.read.split())
-    return finding.kind is Kind.NUMBER and read == finding.printed.replace(".", "")
+    is_number = finding.kind in (Kind.NUMBER, Kind.UNREAD) and read
+    return bool(is_number) and read == finding.printed.replace(".", "")
 
 
 def _swap(finding: Finding) -> str:
