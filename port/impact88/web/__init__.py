@@ -1,5 +1,1 @@
 """A local web page, reachable from this computer only: printouts, collisions, the 1988 program."""
-
-from .server import serve
-
-__all__ = ["serve"]

@@ -1,7 +1,7 @@
 """The pages: Printout, Collision, 1988.
 
-Every page is HTML made here. htmx sends a form and puts the answer into the page; without scripts
-the same forms give whole pages. Nothing of a request is kept.
+Every page is HTML made here. htmx sends a form and puts the answer into the page; a form that is
+sent without it gives the answer as a page of its own. Nothing of a request is kept.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ..report.answers import ask
 from ..report.casepage import case_page, drawing_of, verification_page
 from ..report.exhibits import Exhibit, examine
 from ..report.pages import environment
-from .guard import HEADERS, MAX_BODY, PAGE_POLICY, REPORT_POLICY, refusal
+from .guard import HEADERS, MAX_BODY, PAGE_POLICY, REPORT_POLICY, is_foreign
 from .questions import answer_in_time
 
 DEFAULT_KIND = "planar"
@@ -44,8 +44,8 @@ def application(port: int, token: str) -> Flask:
 
     @app.before_request
     def check() -> None:
-        if status := refusal(dict(request.headers), request.method, request.path, port, token):
-            abort(status)
+        if is_foreign(request, port):
+            abort(403)
 
     @app.after_request
     def protect(response: Response) -> Response:
@@ -66,9 +66,9 @@ def _problem(error: UserError) -> tuple[str, int]:
     return _show("problem.html", message=str(error)), 422
 
 
-def _show(part: str, whole: str = "layout.html", **context: Any) -> str:
-    """Return a part of a page to htmx, and the whole page to a browser without scripts."""
-    name = part if "HX-Request" in request.headers else whole
+def _show(part: str, **context: Any) -> str:
+    """Return a part of a page to htmx, and else a page of that part alone."""
+    name = part if "HX-Request" in request.headers else "layout.html"
     return render_template(name, part=part, **context)
 
 
@@ -104,8 +104,7 @@ def verify() -> str:
 
 def verification() -> Response:
     """Return the report on the printouts."""
-    headings = {name: request.form.get(name, "") for name in HEADINGS[1:]}
-    return _report(verification_page(_exhibits(), headings))
+    return _report(verification_page(_exhibits(), request.form))
 
 
 def collision() -> str:
@@ -153,7 +152,7 @@ def fields() -> str:
         former = TEMPLATES.get(request.form.get("was", ""), TEMPLATES[DEFAULT_KIND]).entries
         texts = {n: text for n, text in _texts().items() if text != former.get(n)}
         kind = request.form.get("kind", "")
-    return _show("fields.html", "collision.html", **_fields(texts, kind))
+    return _show("fields.html", **_fields(texts, kind))
 
 
 def _case() -> Case:
@@ -189,4 +188,4 @@ def printed() -> str:
     """Return what the 1988 program prints for a form's case."""
     case = _case()
     page = run(case.texts).page
-    return _show("printed.html", "program.html", printed=page, case=case, texts=case.texts)
+    return _show("printed.html", printed=page, case=case)

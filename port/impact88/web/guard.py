@@ -1,13 +1,12 @@
 """Access control: which requests are answered, and the headers of every answer.
 
 Other users of the computer, and other pages in the same browser, can reach the port too. A request
-has to name this host exactly, begin its path with the random token, and, unless it only reads,
-come from a page of this origin."""
+has to name this host exactly and, unless it only reads, to come from a page of this origin. Every
+page's path begins with the random token: others are not found."""
 
 from __future__ import annotations
 
-import hmac
-from collections.abc import Mapping
+from flask import Request
 
 MAX_BODY = 16_000_000  # bytes of a request: some dozens of scanned pages
 _COMMON = (
@@ -29,27 +28,16 @@ REPORT_POLICY = f"{_COMMON}style-src 'unsafe-inline'"
 """Policy of a report, whose one style sheet is in the page; it runs no scripts."""
 
 
-def refusal(
-    headers: Mapping[str, str], method: str, path: str, port: int, token: str
-) -> int | None:
-    """Return the status with which a request is refused, None if it is answered.
+def is_foreign(request: Request, port: int) -> bool:
+    """Return True if a request is not one of this origin.
 
     Parameters
     ----------
-    headers : mapping of str to str
-        The request's headers.
-    method, path : str
-        Its first line.
+    request : flask.Request
+        The request.
     port : int
         The port of this server.
-    token : str
-        The first part of every path.
     """
-    host = f"127.0.0.1:{port}"
-    if headers.get("Host") != host:
-        return 403
-    first = path.lstrip("/").partition("/")[0]
-    if not hmac.compare_digest(first.encode("utf-8", "replace"), token.encode()):
-        return 404
-    own = f"http://{host}"
-    return None if headers.get("Origin", own if method in ("GET", "HEAD") else "") == own else 403
+    own = f"http://127.0.0.1:{port}"
+    origin = request.headers.get("Origin", own if request.method in ("GET", "HEAD") else "")
+    return origin != own or f"http://{request.headers.get('Host')}" != own
