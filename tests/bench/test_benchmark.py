@@ -17,8 +17,8 @@ pytest.importorskip("mpmath")
 @pytest.fixture(scope="module")
 def measurements():
     steps = []
-    rows = benchmark.measure(lambda: steps.append(1), scenes=12, repeats=1, effort=1e-4)
-    assert len(steps) == benchmark.count_steps(repeats=1)
+    rows = benchmark.measure(lambda *step: steps.append(step), scenes=12, repeats=1, effort=1e-4)
+    assert steps[-1] == (len(rows), 1.0)
     return {(row.population, row.method): row for row in rows}
 
 

@@ -179,7 +179,7 @@ class Measurement(NamedTuple):
 
 
 def measure(
-    progress: Callable[[], object],
+    progress: Callable[[int, float], object],
     scenes: int = ERROR_SCENES,
     repeats: int = REPEATS,
     effort: float = 1.0,
@@ -189,7 +189,7 @@ def measure(
     Parameters
     ----------
     progress : callable
-        Called after each step, of which there are `count_steps`.
+        Called after each measurement with their number, and the fraction of all.
     scenes : int, default 300
         Scenes of a population whose errors are taken.
     repeats : int, default 5
@@ -206,7 +206,6 @@ def measure(
     for number, (population, make) in enumerate(POPULATIONS.items()):
         columns = make(np.random.default_rng([SEED, number]), scenes)
         exact = _reference(columns)
-        progress()
         for method in METHODS:
             errors = relative_errors(method.run(method.prepare(columns)), exact)
             finite = errors[np.isfinite(errors)]
@@ -218,7 +217,6 @@ def measure(
                 start = time.process_time()
                 method.run(inputs)
                 seconds.append((time.process_time() - start) / count)
-                progress()
             measurements.append(
                 Measurement(
                     population,
@@ -230,12 +228,9 @@ def measure(
                     len(errors) - len(finite),
                 )
             )
+            done = len(measurements)
+            progress(done, done / (len(POPULATIONS) * len(METHODS)))
     return measurements
-
-
-def count_steps(repeats: int = REPEATS) -> int:
-    """Return how often `measure` reports progress."""
-    return len(POPULATIONS) * (1 + len(METHODS) * repeats)
 
 
 def _reference(columns: Columns) -> Floats:

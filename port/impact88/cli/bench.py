@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from ..errors import library
 from .options import JSON, OUTPUT, Args
-from .output import show
+from .output import show, show_progress
 
 OPTIONS = (JSON, OUTPUT)
 
@@ -21,6 +21,6 @@ def main(args: Args) -> None:
     from ..bench import benchmark as bench
 
     computer = bench.computer()
-    rows = bench.measure(lambda: None)
+    rows = bench.measure(show_progress)
     record = {"computer": computer, "measurements": [row._asdict() for row in rows]}
     show(args.json, "bench", record, [bench.markdown(rows, computer)])

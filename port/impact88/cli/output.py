@@ -1,8 +1,9 @@
-"""Output of commands: JSON with the version of its form, remarks."""
+"""Output of commands: JSON with the version of its form, progress, remarks."""
 
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -43,6 +44,14 @@ def _json_value(value: Any) -> Any:
     if hasattr(value, "tolist"):
         return value.tolist()
     return dict(value) if hasattr(value, "keys") else asdict(value)
+
+
+def show_progress(done: int, fraction: float | None) -> None:
+    """Show the steps done, or the fraction if it is known, on a line of stderr that the next one
+    replaces; nothing where stderr is no terminal."""
+    if sys.stderr.isatty():
+        text = f"{done:,}" if fraction is None else f"{fraction:.0%}"
+        print(text, end="\r", file=sys.stderr, flush=True)
 
 
 def say(command: str, remarks: Iterable[str]) -> None:

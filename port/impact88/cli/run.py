@@ -17,7 +17,7 @@ from ..apple.applesoft.console import Console, EndOfInput
 from ..decimals import to_text
 from ..errors import UserError, note
 from ..files import typed_line
-from ..names import SCENE, VELOCITIES, missing
+from ..names import SCENE, VELOCITIES
 from ..program.run import Run, page, run, start
 from ..program.scene import Scene, published_data, sample
 from .options import CASE, JSON, OUTPUT, Args, case_of, choice
@@ -58,14 +58,12 @@ def _scene(args: Args) -> Scene:
         from ..report.answers import ask
 
         impact = ask(case).scene
-        if unknown := [name for name in absent if name not in impact]:
-            raise UserError(f"the impact found leaves inputs open: {missing(unknown)}", case.source)
-        # values known within limits are adjusted
-        scene |= {name: to_text(impact[name]) for name in (*absent, *case.ranges)}
+        found = [name for name in (*absent, *case.ranges) if name in impact]
+        scene |= {name: to_text(impact[name]) for name in found}  # limits are adjusted to it
         note("run", f"as impact88 solve finds them: {' '.join(absent)}")
     if case.omitted:
-        names = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
-        note("run", f"0 is typed for what is not given: {' '.join(names)}")
+        typed = [f"{name} = {scene[name]}" for name in case.omitted]
+        note("run", f"typed for what is not given: {', '.join(typed)}")
     return Scene(scene, None, case.source)
 
 

@@ -35,7 +35,7 @@ from .options import (
     printing_to,
     texts,
 )
-from .output import say
+from .output import say, show_progress
 
 WRITES = True
 TABLES = (".csv", ".tsv", ".jsonl", ".ndjson", ".parquet", ".xlsx")
@@ -90,6 +90,7 @@ def _solve_table(args: Args, is_table: bool) -> int:
         replaced=[*changes_of(args)] if is_table else (),
         arithmetic=args.arithmetic or "float64",
         results_only=args.results_only,
+        progress=show_progress,
     )
     remarks = dict.fromkeys([*case.remarks, *results.remarks])
     say("solve", [*remarks, *results.listed])
