@@ -21,6 +21,7 @@ from ..errors import UserError, note
 from ..files import display_name, packaged_bytes, read_bytes, typed_line
 from ..program.run import page
 from .options import Args, InputPath, option
+from .output import say
 
 LISTING = "impact.bas"
 MAX_PROGRAM_BYTES = 1_000_000  # 48K hold some 50,000
@@ -97,8 +98,7 @@ def main(args: Args) -> int:
         signal.signal(signal.SIGINT, handler)
         for feature in apple.machine.refused:
             note("basic", f"{feature} is not supported: text only, no tape, no machine code")
-        for sentence in apple.machine.ignored:
-            note("basic", sentence)
+        say("basic", apple.machine.ignored)
 
 
 def _run(apple: Applesoft) -> int:

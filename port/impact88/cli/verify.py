@@ -73,9 +73,8 @@ def main(args: options.Args) -> int:
     if args.report:
         from ..report.casepage import verification_page
 
-        headings = {name: getattr(args, name) for name in HEADINGS}
         with options.printing_to(args.report):
-            print(verification_page(exhibits, headings), end="")
+            print(verification_page(exhibits, vars(args)), end="")
     return int(any(item.result.verdict is not Verdict.IDENTICAL for item in exhibits))
 
 
