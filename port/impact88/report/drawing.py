@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..cases import Case, View
 from ..errors import UserError, library
-from ..names import LENGTH, MASS, missing
+from ..names import LENGTH, MASS
 from .answers import DRAWN, Answer, numbers_of
 from .pages import render
 
@@ -95,7 +95,7 @@ def draw(answer: Answer) -> str:
     case, view = answer.case, answer.case.view
     values = answer.scene
     if absent := [name for name in "MA MB UX UY VX VY GA".split() if name not in values]:
-        raise UserError(f"{missing(absent)}; the drawing shows velocities and contact plane")
+        raise UserError(f"no impact that agrees with the values has {' '.join(absent)}")
     numbers = {name: values[name] for name in (*DRAWN, "WA", "WB") if name in values}
     bodies = {name: _body(name, values, case) for name in "AB"}
     outlines = [body.points for body in bodies.values()]
