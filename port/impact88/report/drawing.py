@@ -132,7 +132,7 @@ def _unit(degrees: float) -> complex:
 
 def _arc(radius: float, start: float, stop: float) -> Points:
     """Return points of a circle around 0 from one angle in radians to another."""
-    points: Points = radius * np.exp(1j * np.linspace(start, stop, 37))
+    points: Points = radius * np.exp(1j * np.linspace(start, stop, 73))
     return points
 
 
