@@ -45,8 +45,12 @@ def test_accepted(name: str, text: str, value: float, low: float, high: float) -
 @pytest.mark.parametrize(
     ("name", "text", "reason"),
     [
-        ("UX", "1,234 km/h", "comma of 1,234 may be a decimal one; expected 1234 or 1.234"),
-        ("MA", "3 .. 1,234 kg", "comma of 1,234 may be a decimal one"),
+        (
+            "UX",
+            "1,234 km/h",
+            "comma may be a decimal one; expected 1234 km/h, or a decimal",
+        ),
+        ("MA", "3 .. 1,234 kg", "expected 3 .. 1234 kg, or"),
         ("UX", "٣ .. ٥", "is not an amount"),
         ("UX", "5 .. 3", "lower limit first"),
         ("UX", "30 +- -2", "no negative tolerance"),
@@ -64,8 +68,7 @@ def test_accepted(name: str, text: str, value: float, low: float, high: float) -
         ("MUP", "85 %", "MU takes shares"),
         ("UX", "skid 62 ft at 0.7", "expected SA, SB, SAF, SBF"),
         ("SAF", "skid -62 ft at 0.7", "above 0"),
-        ("SAF", "skid 62 ft at 1.9 +- .11", "expected at most 2"),
-        ("UX", "triangular 3 mph 4 mph 5", "a unit beside one number or beside each"),
+        ("SAF", "skid 62 ft at 1.9 +- .11", "above 0, and at most 2"),
         ("UX", ".", "is not an amount"),
         ("MA", "0,123 lb", "is not an amount"),
     ],
@@ -79,7 +82,8 @@ def test_refused(name: str, text: str, reason: str) -> None:
 def test_percentage_of_a_compass_heading_is_of_the_heading() -> None:
     amount = read("TA", "271 +- 1 %", View(headings="compass"))
     view = View(headings="compass")
-    assert view.shown_ends("TA", amount.low, amount.high) == pytest.approx((268.29, 273.71))
+    ends = [view.shown("TA", end, one_turn=False) for end in (amount.high, amount.low)]
+    assert ends == pytest.approx((268.29, 273.71))
 
 
 def test_digits_are_kept_where_nothing_converts_them() -> None:
@@ -115,6 +119,6 @@ def test_pivot_keeps_its_sign() -> None:
 
 
 def test_amounts_are_checked() -> None:
-    for fields in ((1, 2, 0), (1, 0, 2, "even"), (1, -math.inf, math.inf, "normal", -1)):
-        with pytest.raises(UserError, match=r"lower limit first.* of kinds exact, uniform"):
+    for fields in ((1, 2, 0), (1, -math.inf, math.inf, "normal", -1)):
+        with pytest.raises(UserError, match="lower limit first"):
             Amount(*fields)

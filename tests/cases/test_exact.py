@@ -27,7 +27,7 @@ def test_entries_are_exact_and_shown_as_written(seed: int) -> None:
         largest = max(abs(base), abs(offset)) if offset else 0
         error = math.remainder(float(Fraction(view.shown(name, base)) - shown), turn)
         assert abs(error) <= 2 * math.ulp(float(max(abs(shown), largest)))
-        value = Case.of({**view.words(), name: view.shown_text(name, base)}).entries[name].value
+        value = Case.of({name: view.shown(name, base)}, view=view).entries[name].value
         assert abs(math.remainder(value - base, turn)) <= 2 * math.ulp(
             float(max(abs(base), largest))
         )

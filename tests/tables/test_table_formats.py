@@ -210,7 +210,7 @@ def test_workbooks(tmp_path: Path) -> None:
     outcome = solve_table(str(path), str(target), ["VAX"], case=Case.of({}, view=View("us")))
     assert (outcome.rows, outcome.bad) == (2, 0)
     columns = columns_of(target)
-    assert columns["UX [mph]"] == [25, 30.5]
+    assert columns["UX [mph]"] == ["25 mph", "30.5"]
     assert columns["note"] == ["first", "=second"]
 
 

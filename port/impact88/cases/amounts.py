@@ -16,15 +16,14 @@ from __future__ import annotations
 
 import math
 import re
-from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple, cast
 
-from ..decimals import exact, negated, to_text
+from ..decimals import negated, to_text
 from ..errors import UserError, quoted
-from ..names import INERTIA, LENGTH, MASS, PERCENT, PIVOT, quantity
+from ..names import LENGTH, PERCENT, PIVOT, quantity
 from .units import GRAVITY, PLAIN, Unit, View, shown_unit, unit_of
 
 Kind = Literal["exact", "uniform", "triangular", "normal"]
@@ -34,6 +33,13 @@ TOLERANCE = "+-"
 MAX_DRAG = 2.0  # tires on dry pavement reach about 1; 7 is a lost point
 SKIDDING = ("SA", "SB", "SAF", "SBF")
 """Speeds: sizes, whose directions are HA HB HAF HBF."""
+WORDS = {
+    "course": (math.nan, ("TA", "TB")),  # known once the velocity is
+    "locked": (PIVOT, ("MU", "MUP")),
+    "-10": (PIVOT, ("MU", "MUP")),  # which has no direction
+    "inf": (math.inf, ("MA", "MB", "IA", "IB")),  # a barrier
+}
+"""Words in place of a number, with its value and the quantities that may have it."""
 MAX_LENGTH = 70  # characters of an entry; three and their commas fit the 239 that INPUT keeps
 EXPECTED = (
     "expected such as 25, 28 .. 32, 30 +- 2, 30 +- 5 %, normal 30 1.5, triangular 28 30 33, with "
@@ -63,7 +69,7 @@ class Amount:
     Raises
     ------
     UserError
-        For an unknown kind, limits in the wrong order, or a negative standard deviation.
+        For limits in the wrong order, or a negative standard deviation.
 
     Examples
     --------
@@ -82,11 +88,8 @@ class Amount:
 
     def __post_init__(self) -> None:
         is_ordered = math.isnan(self.value) or self.low <= self.value <= self.high
-        if not (self.kind in get_args(Kind) and is_ordered and self.sd >= 0):
-            raise UserError(
-                "expected the lower limit first, no negative tolerance, and of kinds "
-                f"{', '.join(get_args(Kind))}"
-            )
+        if not is_ordered or self.sd < 0:
+            raise UserError("expected the lower limit first, and no negative tolerance")
 
     @classmethod
     def exactly(cls, value: float, text: str = "") -> Amount:
@@ -133,15 +136,13 @@ class Amount:
         -------
         tuple of float
         """
-        if self.kind != "normal":
-            return self.low, self.high
-        width = reach * self.sd
+        width = reach * self.sd if self.kind == "normal" else math.inf
         return max(self.low, self.value - width), min(self.high, self.value + width)
 
     def mapped(self, factor: Fraction, offset: Fraction = Fraction(0)) -> Amount:
         """Return ``offset + factor * self``, each number correctly rounded.
 
-        Digits as typed are mapped exactly, and kept where only the sign changes.
+        The digits are kept where only the sign changes.
 
         Parameters
         ----------
@@ -167,16 +168,13 @@ class Amount:
         """
 
         def image(x: float | Fraction) -> float:
-            if not math.isfinite(x):
-                return math.copysign(x, x * factor)
-            return float(offset + factor * Fraction(x))
+            return float(offset + factor * Fraction(x)) if math.isfinite(x) else float(factor) * x
 
-        value = image(exact(self.text) if self.text and self.value else self.value)
-        ends = [image(self.low), image(self.high)] if self.varies else [value]
+        value, *ends = map(image, (self.value, self.low, self.high))
         text = "" if offset or abs(factor) != 1 else self.text
         if text and factor < 0 and value:
             text = negated(text)
-        kind = self.kind if ends[0] != ends[-1] else "exact"
+        kind = self.kind if ends[0] != ends[1] else "exact"
         sd = float(abs(factor) * Fraction(self.sd))
         return Amount(value, min(ends), max(ends), kind, sd, text, self.share)
 
@@ -191,12 +189,10 @@ _NUMBER = re.compile(
 )
 _SKID = re.compile(r"skid (.+) at ((?:[-+.\d]|normal |uniform |triangular ).*)")
 _SPELLINGS = str.maketrans({"−": "-", "–": "-", "º": "°", "±": TOLERANCE})
-_COMMA = re.compile(r"(?<![\d,.])\d{1,3},\d{3}(?![\d,.eE])")
-"""A comma that may be a decimal one: 1,234 is a thousand only with an American unit."""
 _COUNTS = {"uniform": 2, "triangular": 3, "normal": 2, "around": 2}
 """Kinds of several numbers; the first word of a text may be one. "around": a middle and its half
 width."""
-_MARKS = {"around": r"\+-", "uniform": r"(?<!\.)\.\.(?!\.)"}
+_MARKS = {"around": TOLERANCE, "uniform": ".."}
 """Marks between the numbers of kinds."""
 
 
@@ -235,13 +231,14 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
     """
     words = normalize(text)
     entry = f"{name} = {quoted(words)}"
+    value, names = WORDS.get(words.lower(), (0.0, ()))
+    if name in names:
+        return Amount.exactly(value)
     try:
         if len(words) > MAX_LENGTH:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
         if words.startswith("skid"):
             return _skid(name, words, view)
-        if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
-            return Amount.exactly(math.inf)  # a barrier
         amount = _amount(name, words, view)
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
@@ -260,16 +257,6 @@ def normalize(text: str) -> str:
     return " ".join(text[: MAX_LENGTH + 1].translate(_SPELLINGS).replace("+/-", TOLERANCE).split())
 
 
-def units_in(name: str, text: str) -> list[Unit]:
-    """Return the units in an amount, none if it is a bare number or no amount."""
-    words = normalize(text)
-    if match := _SKID.fullmatch(words):
-        return units_in("DA", match[1])
-    with suppress(ValueError, OverflowError):  # `read` refuses it
-        return [number.unit for number in parse(quantity(name).unit, words)[1] if number.unit]
-    return []
-
-
 @lru_cache(maxsize=4096)
 def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
     """Return the kind of a `normalize`d amount, one of `Amount` or "around" for a half width, and
@@ -280,9 +267,9 @@ def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
     kind, _, remainder = words.partition(" ")
     parts = re.split(r" (?=[-+]?\.?\d)", remainder)
     if kind not in _COUNTS:
-        kind = next((kind for kind, mark in _MARKS.items() if re.search(mark, words)), "exact")
-        parts = re.split(_MARKS[kind], words) if kind in _MARKS else [words]
-    if len(parts) != _COUNTS.get(kind, 1):
+        kind = next((kind for kind, mark in _MARKS.items() if mark in words), "exact")
+        parts = words.split(_MARKS[kind]) if kind in _MARKS else [words]
+    if len(parts) != _COUNTS.get(kind, 1) or "..." in words:
         raise ValueError(words)
     if kind == "around" and parts[1].endswith("%"):
         if rule == PERCENT or "%" in parts[0]:
@@ -311,39 +298,31 @@ def _number(rule: str, text: str) -> Number:
 
 def _amount(name: str, words: str, view: View) -> Amount:
     """Return the amount of a `normalize`d text in base units. Raises as `parse` does."""
-    kind, numbers = parse(quantity(name).unit, words)
+    rule = quantity(name).unit
+    kind, numbers = parse(rule, words)
     units = [number.unit for number in numbers if number.unit]
-    if len(units) not in (0, 1, len(numbers)):
-        raise UserError("expected a unit beside one number or beside each")
     if units and name == "MUP":
         raise UserError("expected a number without %; MU takes shares of the critical")
-    unit = units[0] if units else shown_unit(quantity(name).unit, view.units)
-    comma = _COMMA.search(words)
-    is_american = unit is not None and {unit.side, *(each.side for each in units)} == {"us"}
-    if comma and not is_american:
-        choices = " or ".join(comma[0].replace(",", mark) for mark in ("", "."))
-        raise UserError(f"the comma of {comma[0]} may be a decimal one; expected {choices}")
+    unit = units[0] if units else shown_unit(rule, view.units)
+    if "," in words and {each.side for each in (unit, *units)} != {"us"}:
+        digits = words.replace(",", "")
+        raise UserError(f"the comma may be a decimal one; expected {digits}, or a decimal point")
     values: list[Any] = [  # exact fractions, until they are mapped
-        n.value * n.unit.size / unit.size if n.unit and unit else n.value for n in numbers
+        number.value * (number.unit or unit).size / unit.size for number in numbers
     ]
-    first, last = values[0], values[-1]
-    reach = math.inf if last else 0
-    low, value, high = {
-        "exact": (first, first, first),
-        "around": (first - last, first, first + last),
-        "uniform": (first, (first + last) / 2, last),
-        "triangular": (first, values[len(values) // 2], last),
-        "normal": (first - reach, first, first + reach),
-    }[kind]
-    nominal = {"uniform": "", "triangular": numbers[len(values) // 2].digits}
-    text = nominal.get(kind, numbers[0].digits)
-    distribution: Any = "uniform" if kind == "around" else kind
-    sd = last if kind == "normal" else 0
-    share = name == "MU" and bool(units)
-    amount = Amount(value, low, high, distribution, sd, text, share)
-    if name == "MUP" and value == PIVOT:  # the pivot's mark has no direction
-        return amount.mapped(Fraction(1))
-    return amount.mapped(*view.map(name, unit.symbol if unit else ""))
+    place = (len(values) - 1) // 2  # of the nominal value
+    value, low, high, sd = values[place], values[0], values[-1], 0.0
+    digits = numbers[place].digits
+    if kind == "uniform":
+        value, digits = (low + high) / 2, ""
+    elif kind == "around":
+        kind, low, high = "uniform", value - high, value + high
+    elif kind == "normal":
+        sd = high
+        reach = math.inf if sd else 0
+        low, high = value - reach, value + reach
+    amount = Amount(value, low, high, cast(Kind, kind), sd, digits, name == "MU" and bool(units))
+    return amount.mapped(*view.map(name, unit.symbol))
 
 
 def _skid(name: str, words: str, view: View) -> Amount:
@@ -356,16 +335,13 @@ def _skid(name: str, words: str, view: View) -> Amount:
         raise UserError(f"a skid gives a speed; expected {', '.join(SKIDDING)}")
     if match is None or not view.units:
         raise UserError("expected distance, unit and friction, such as skid 60 ft at 0.7")
-    parts = read("DA", match[1], view), read("E", match[2])
-    distances, frictions = ((*part.limits(), part.value) for part in parts)
-    if min(*distances, *frictions) <= 0:
-        raise UserError("expected a distance and a friction above 0")
-    if max(frictions) > MAX_DRAG:
-        raise UserError(f"drag factor {match[2]}; expected at most {MAX_DRAG:g}, such as 0.7")
+    distance, friction = parts = read("DA", match[1], view), read("E", match[2])
+    (near, far), (slick, rough) = (part.limits() for part in parts)
+    if min(near, slick) <= 0 or rough > MAX_DRAG:
+        raise UserError(f"expected a distance and a friction above 0, and at most {MAX_DRAG:g}")
     gravity = float(GRAVITY / view.base_size(LENGTH))
-    slow, fast, value = (
-        math.sqrt(2 * gravity * d * mu) for d, mu in zip(distances, frictions, strict=True)
-    )
+    products = near * slick, distance.value * friction.value, far * rough
+    slow, value, fast = (math.sqrt(2 * gravity * product) for product in products)
     kinds = [part.kind for part in parts if part.varies] or ["exact"]
     kind = kinds[0] if len(kinds) == 1 else "normal"
     spread = math.hypot(*(part.standard_deviation / part.value for part in parts))

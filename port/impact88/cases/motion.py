@@ -6,9 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ..decimals import to_text
 from ..errors import UserError
-from ..names import PIVOT
 from .amounts import Amount
 
 VECTORS = {
@@ -20,67 +18,55 @@ VECTORS = {
 """Speeds, each with the components and the course of its velocity."""
 OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
 """The contact point forward and to the left of a center of gravity, in place of DA PA and DB PB."""
-PARALLEL = 1e-9  # largest sine between directions along one line; rounding leaves 1e-16
 _ACROSS = ("PDOFA", "PDOFB", "DVAR", "DVBR", "PT")
 """Directions of the impulse: where one is known, the line is not taken for granted."""
 _ENOUGH = ({"SA", "SB"}, {"SAF", "SBF"})
 """Velocities along one line, either of which leave the momentum no other direction."""
 
 
-def exact_number(value: float) -> Amount:
-    """Return a computed number as an exact amount with digits to type."""
-    return Amount.exactly(value, to_text(value))
-
-
-def contact_point(entries: Mapping[str, Amount]) -> dict[str, Amount]:
-    """Return entries with DA PA (DB PB) in place of CAF CAL (CBF CBL).
-
-    The point's own coordinates stay where they are known within limits, which are no limits of
-    distance and angle.
+def contact_point(values: Mapping[str, float]) -> dict[str, float]:
+    """Return DA PA (DB PB) of values that have CAF CAL (CBF CBL) in their place.
 
     Raises
     ------
     UserError
         If one of two coordinates is missing, or both pairs are given.
     """
-    result = dict(entries)
+    result = {}
     for vehicle, pair in OWN_AXES.items():
-        own = [entries[name] for name in pair if name in entries]
+        own = [values[name] for name in pair if name in values]
         polar = f"D{vehicle}", f"P{vehicle}"
-        if own and (len(own) == 1 or not entries.keys().isdisjoint(polar)):
+        if own and (len(own) == 1 or not values.keys().isdisjoint(polar)):
             raise UserError(
                 f"expected {' and '.join(pair)}, or {' and '.join(polar)} in their place"
             )
-        if own and not any(amount.varies for amount in own):
-            forward, left = (result.pop(name).value for name in pair)
-            angle = math.degrees(math.atan2(left, forward))
-            result[polar[0]] = exact_number(math.hypot(forward, left))
-            result[polar[1]] = exact_number(angle)
+        if own:
+            forward, left = own
+            result[polar[0]] = math.hypot(forward, left)
+            result[polar[1]] = math.degrees(math.atan2(left, forward))
     return result
 
 
-def velocities(entries: Mapping[str, Amount]) -> dict[str, tuple[float, float]]:
-    """Return the velocities whose directions are known exactly: sizes, NaN where not known, and
-    courses in degrees from the x axis. A vehicle at rest has size 0, and the course 0."""
-    exact = {name: amount.value for name, amount in entries.items() if not amount.varies}
+def velocities(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """Return the velocities whose directions are known: sizes, NaN where not known, and courses in
+    degrees from the x axis. A vehicle at rest has size 0, and the course 0."""
     vectors = {}
     for speed, (x, y, course) in VECTORS.items():
-        if exact.get(speed) == 0:
+        if values.get(speed) == 0:
             vectors[speed] = 0.0, 0.0
-        elif x in exact and y in exact:
-            size = math.hypot(exact[x], exact[y])
-            vectors[speed] = size, math.degrees(math.atan2(exact[y], exact[x]))
-        elif course in exact:
-            vectors[speed] = entries[speed].value if speed in entries else math.nan, exact[course]
+        elif x in values and y in values:
+            angle = math.degrees(math.atan2(values[y], values[x]))
+            vectors[speed] = math.hypot(values[x], values[y]), angle
+        elif course in values:
+            vectors[speed] = values.get(speed, math.nan), values[course]
     return vectors
 
 
-def courses(entries: Mapping[str, Amount]) -> dict[str, float]:
+def courses(values: Mapping[str, float]) -> dict[str, float]:
     """Return the vehicles' courses before the impact in degrees from the x axis, by "A" and "B",
-    where they are known exactly and the vehicle moves."""
-    vectors = velocities(entries)
-    before = {speed[1]: vectors[speed] for speed in ("SA", "SB") if speed in vectors}
-    return {vehicle: course for vehicle, (size, course) in before.items() if size}
+    where they are known and the vehicle moves."""
+    vectors = velocities(values)
+    return {speed[1]: vectors[speed][1] for speed in ("SA", "SB") if vectors.get(speed, (0,))[0]}
 
 
 def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
@@ -94,44 +80,19 @@ def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
     float or None
         Degrees, from -180 to 180; A approaches against the normal. None for another motion.
     """
-    vectors = velocities(entries)
-    moving = [speed for speed, (size, _) in vectors.items() if size]
+    exact = {n: a.value for n, a in entries.items() if n in VECTORS or not a.varies}
+    vectors = velocities(exact)
+    moving = {speed: course for speed, (size, course) in vectors.items() if size}
     others = [name for speed in VECTORS.keys() - vectors for name in VECTORS[speed]]
     is_known = any(pair <= vectors.keys() for pair in _ENOUGH)
-    if not (is_known and moving and entries.keys().isdisjoint((*others, *_ACROSS))):
+    is_alone = len({round(course, 7) % 180 for course in moving.values()}) == 1
+    if not (is_known and is_alone and entries.keys().isdisjoint((*others, *_ACROSS))):
         return None
-    line = vectors[moving[0]][1]
-    along = dict.fromkeys(("SA", "SB"), math.nan)
-    for speed, (size, course) in vectors.items():
-        angle = math.radians(course - line)
-        if size and abs(math.sin(angle)) > PARALLEL:
-            return None
-        along[speed] = size * math.cos(angle)
-    approach = along["SA"] - along["SB"]
-    # where not both speeds before are known, A is taken to be the faster one
-    is_forward = approach > 0 or (not approach < 0 and moving[0][1] == "A")
-    return math.remainder(line + 180 * is_forward, 360) + 0.0
-
-
-def plane_across(entries: Mapping[str, Amount]) -> tuple[dict[str, Amount], list[str]]:
-    """Return the entries of point masses that move along one line with a contact plane across it,
-    along which nothing acts, and remarks; other entries unchanged."""
-    result = dict(entries)
-    line = line_of_motion(entries) if entries["M"].value == 4 and "GA" not in entries else None
-    if line is None:
-        return result, []
-    result["GA"] = exact_number(line)
-    friction = [name for name in ("MU", "MUP") if name in entries]
-    unused = ""
-    if not any(entries[name].value == PIVOT for name in friction):
-        unused = "".join(f"; {name} is not used" for name in friction)
-        result.pop("MUP", None)
-        vectors = velocities(entries).keys()
-        is_implied = {"SA", "SAF"} <= vectors or {"SB", "SBF"} <= vectors
-        if friction or not is_implied:
-            result["MU"] = exact_number(0.0)
-    remark = (
-        "the motion is along one line: the contact plane is across it, and nothing acts along the "
-        f"plane (MU = 0{unused})"
+    first, line = next(iter(moving.items()))
+    along_a, along_b = (
+        size * math.cos(math.radians(course - line))
+        for size, course in (vectors.get(speed, (math.nan, 0.0)) for speed in ("SA", "SB"))
     )
-    return result, [remark]
+    # where not both speeds before are known, A is taken to be the faster one
+    is_forward = along_a > along_b or (not along_a < along_b and first[1] == "A")
+    return math.remainder(line + 180 * is_forward, 360) + 0.0

@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ..errors import UserError, quoted
+from ..errors import UserError, printable, quoted
 from ..names import CHAPTER, RESULTS, SCENE
 from .units import PLAIN, View
 
@@ -65,15 +65,13 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, str]]:
     return {name: str(value) for name, value in values.items()}, places
 
 
-def write_toml(texts: Mapping[str, str], heading: str = "", view: View = PLAIN) -> str:
+def write_toml(texts: Mapping[str, str], view: View = PLAIN) -> str:
     """Return a commented scene file.
 
     Parameters
     ----------
     texts : mapping of str to str
-        Entries as written; those about the file come first, then those of a scene.
-    heading : str, optional
-        Lines of comment for the top.
+        Entries as written.
     view : View, optional
         Its units are those of the comments.
 
@@ -82,24 +80,20 @@ def write_toml(texts: Mapping[str, str], heading: str = "", view: View = PLAIN) 
     str
         The file; `read_toml` gives the texts back.
     """
-    lines = [f"# {line}".rstrip() for line in heading.splitlines()] + [""] * bool(heading)
-    names = dict.fromkeys(n.removesuffix(SOURCE) for n in (*ABOUT, *SCENE, *texts))
-    for name in (entry for n in names for entry in (n, n + SOURCE) if entry in texts):
+    order = [*ABOUT, *INPUTS]
+    lines = []
+    for name in sorted(texts, key=lambda n: (order.index(n.removesuffix(SOURCE)), n)):
         text, row = texts[name], INPUTS.get(name)
-        line = f"{name} = {text if _PLAIN_TOML.fullmatch(text) else _toml_text(text)}"
-        comment = f" # {row.meaning} [{view.unit(name) or row.unit}]" if row else ""
-        lines.append(f"{line:<20}{comment}" if row else line)
+        if not _PLAIN_TOML.fullmatch(text):
+            text = json.dumps(printable(text), ensure_ascii=False)
+        line = f"{name} = {text}"
+        comment = f"# {row.meaning} [{view.unit(name) or row.unit}]" if row else ""
+        lines.append(f"{line:<20} {comment}".rstrip())
     return "\n".join(lines) + "\n"
 
 
 _PLAIN_TOML = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 """Numbers that TOML takes without quotes."""
-
-
-def _toml_text(text: str) -> str:
-    """Return a text as a one-line TOML string."""
-    line = "".join(c if c.isprintable() else " " for c in text)
-    return json.dumps(line, ensure_ascii=False)
 
 
 class Template(NamedTuple):
@@ -185,5 +179,7 @@ def template(kind: str = "planar", units: str = "us") -> str:
         )
     title, advice, _ = TEMPLATES[kind]
     view = View.of(units=units)
-    heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 solve FILE"
-    return write_toml({**view.words(), **TEMPLATES[kind].entries}, heading, view)
+    comment = f"\n{title}\n\n{advice}\nFilled in, it goes to: impact88 solve FILE".replace(
+        "\n", "\n# "
+    )
+    return f"{comment[1:]}\n\n{write_toml({'units': view.units, **TEMPLATES[kind].entries}, view)}"

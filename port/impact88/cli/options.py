@@ -139,4 +139,4 @@ def case_of(args: Args) -> Case:
         case = Case.of({}, "--set", View.of(units=args.units))
     else:
         raise UserError("no collision is given; expected a FILE.toml, --sample N, or --set")
-    return case.with_(changes_of(args), "--set") if args.set else case
+    return case.with_("--set", **changes_of(args))

@@ -61,8 +61,7 @@ def _scene(args: Args) -> Scene:
         found = [name for name in (*absent, *case.ranges) if name in impact]
         scene |= {name: to_text(impact[name]) for name in found}  # limits are adjusted to it
         note("run", f"as impact88 solve finds them: {' '.join(absent)}")
-    if case.omitted:
-        typed = [f"{name} = {scene[name]}" for name in case.omitted]
+    if typed := [f"{n} = {case.texts[n]}" for n in case.texts if n not in case.numbers]:
         note("run", f"typed for what is not given: {', '.join(typed)}")
     return Scene(scene, None, case.source)
 

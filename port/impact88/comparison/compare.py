@@ -74,12 +74,13 @@ def compare(
     """
     columns = read_table(table)
     values = values or {}
-    view = View.of(units=units or ("chapter" if kit else ""))
+    case = Case.of(values, "--set", View.of(units=units or ("chapter" if kit else "")))
     measured = (*SCENE, *COMPARED)
-    headings, view = read_headings([*columns], Case.of(values, "--set", view).view, measured)
-    case = Case.of(values, "--set", view, is_inferred=view.units != units)
+    headings = read_headings([*columns])
     names = {heading: name for name, (heading, _) in headings.items()}
-    factors = {name: float(view.map(name, unit)[0]) for name, (_, unit) in headings.items()}
+    factors = {
+        n: float(case.view.map(n, unit)[0]) for n, (_, unit) in headings.items() if n in measured
+    }
     columns = {names.get(heading, heading): column for heading, column in columns.items()}
     others = [name for name in columns if name not in (*measured, *HEAD, *REMARKS)]
     for name in case.numbers:

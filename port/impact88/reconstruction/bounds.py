@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..cases.amounts import Amount
-from ..cases.motion import contact_point, line_of_motion
+from ..cases.motion import line_of_motion
 from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
@@ -97,7 +97,7 @@ class _Box:
     """The inputs: exact ones, and the limits of those that vary."""
 
     def __init__(self, amounts: Mapping[str, Amount]) -> None:
-        amounts = {"M": Amount.exactly(BODIES), **contact_point(amounts)}
+        amounts = {"M": Amount.exactly(BODIES), **amounts}
         if amounts["M"].value == POINT:
             amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
             line = None if "GA" in amounts else line_of_motion(amounts)

@@ -284,7 +284,8 @@ class Search:
         from points near them whose measured coordinates are so, and whether Newton's method ended
         in one; as many values are measured as determine an impact."""
         points = points / self.sizes
-        target = np.pad(moves, ((0, 0), (0, len(self.hard))))
+        exact = self.residuals(points[:1])[1].shape[1]  # with the limits of physics, if searched
+        target = np.pad(moves, ((0, 0), (0, exact)))
         free = np.delete(np.arange(len(self.names)), self.places)
         for _ in range(NEWTON_STEPS):
             residual = self._all_residuals(points)

@@ -305,10 +305,10 @@ def numbers_of(
         90 % intervals of some of them, in base units.
     """
     rows = {}
-    numbers = {name: float(case.view.shown(name, value)) for name, value in values.items()}
+    numbers = {name: case.view.shown(name, value) for name, value in values.items()}
     rules = {name: quantity(name).unit for name in numbers}
     for name, value in numbers.items():
-        ends = case.view.shown_ends(name, *intervals[name]) if name in intervals else None
+        ends = tuple(sorted(case.view.shown(name, x, False) for x in intervals.get(name, ())))
         if ends and rules[name] == ANGLE and math.isfinite(value):  # a heading is within one turn
             turns = 360.0 * round((value - sum(ends) / 2) / 360.0)
             ends = ends[0] + turns, ends[1] + turns
@@ -321,9 +321,9 @@ def numbers_of(
             case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(rules[name], ""),
             text,
             clock(value) if text and "PDOF" in name else "",
-            " .. ".join(round_number(end, decimals) for end in ends or ()),
+            " .. ".join(round_number(end, decimals) for end in ends),
             value,
-            ends,
+            ends or None,
         )
     return rows
 

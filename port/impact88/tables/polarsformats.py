@@ -62,8 +62,8 @@ def _column(series: Any) -> Column:
 
 
 def read_excel(path: str) -> Table:
-    """Return the table in the first sheet of a workbook: the row with most of the scene's names
-    among the first has the headings.
+    """Return the table in the first sheet of a workbook: the first row that has a name of the scene
+    has the headings.
 
     A column's cells are read as numbers, with all their bits, and what is left as text. Raises
     UserError."""
@@ -78,10 +78,10 @@ def read_excel(path: str) -> Table:
             for kind in ("float", "string")
         )
     rows = [[cell or "" for cell in row] for row in texts.head(MAX_HEADING_ROW).rows()]
-    counts = [sum(bool(heading_name(cell)[0]) for cell in row) for row in rows]
-    if not any(counts):
+    places = (at for at, row in enumerate(rows) if any(heading_name(cell)[0] for cell in row))
+    place = next(places, None)
+    if place is None:
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
-    place = counts.index(max(counts))
     headings = rows[place]
     while not headings[-1].strip():
         headings.pop()

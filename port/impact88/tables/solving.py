@@ -7,8 +7,10 @@ columns, by the affine map of each heading; any other row is read as a `Case`.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,12 +18,11 @@ from numpy.typing import NDArray
 
 from ..cases.amounts import MAX_LENGTH, Amount
 from ..cases.case import POINT_DEFAULTS, Case
-from ..cases.plausibility import implausible, impossible
-from ..cases.units import View, is_measured, system_using, unit_of
-from ..decimals import is_number, to_double, to_text
+from ..cases.vehicles import implausible
+from ..decimals import exact, is_number, to_double, to_text
 from ..errors import UserError, quoted
 from ..mechanics.solve import evaluate, solve
-from ..names import RESULTS, SCENE, check_names, quantity
+from ..names import RESULTS, SCENE, check_names
 from ..status import Status
 from .engine import is_csv, read_table, write_table
 from .textformats import Block, Column, Table, heading_name
@@ -32,7 +33,10 @@ MAX_LISTED = 20  # bad rows kept for the terminal: one screenful
 APPLESOFT_RESULTS = tuple(n for n, row in RESULTS.items() if row.line or n == "KF")
 """Results of the 1988 arithmetic."""
 ZERO_DETERMINANT = "ZERO DETERMINANT"
-_POINT_NUMBERS = {name: float(text) for name, text in POINT_DEFAULTS.items()}
+UNUSABLE = (
+    "no impact has these values; expected M = 6 or 4, masses and inertias above 0, angles "
+    "below 1e12, and at most one barrier (MB = inf, IB = inf), at rest"
+)
 _EMPTY = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
 """Results of a row that cannot be used; others are NaN."""
 
@@ -161,18 +165,15 @@ class Solver:
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         check_names(results, allowed, f"result of --arithmetic {arithmetic}", "--results")
         self.results = tuple(results) or allowed
-        case = case or Case.of({})
+        self.case = case = case or Case.of({})
+        headings = read_headings(table.names, table.where)
+        self.headings = {name: headings[name] for name in SCENE if name in headings}
         try:
-            headings, self.view = read_headings(table.names, case.view)
+            self.maps = {n: case.view.map(n, unit) for n, (_, unit) in self.headings.items()}
         except UserError as error:
             raise UserError(str(error), table.where) from None
-        is_inferred = self.view != case.view
-        self.case = case = Case.of(case.written, case.source, self.view, case.places, is_inferred)
-        self.names = {h: name for name, (h, _) in headings.items() if name in SCENE}
-        self.units = {name: headings[name][1] for name in self.names.values()}
-        replaced = {*replaced} & {*case.entries}
-        self.columns = {name: h for h, name in self.names.items() if name not in replaced}
-        known = {*self.columns, *case.derived}
+        self.columns = {*self.headings} - ({*replaced} & {*case.entries})
+        known = self.columns | {*case.derived}
         self.constants = {n: x for n, x in case.numbers.items() if n not in known}
         known.update(self.constants)
         if "M" in self.columns or self.constants.get("M") == 4:
@@ -180,15 +181,16 @@ class Solver:
         if absent := " ".join(name for name in SCENE if name not in known):
             message = f"no column {absent}; --set NAME=VALUE gives one for all rows"
             raise UserError(message, table.where)
-        self._remarked: dict[str, list[Any]] = {}
+        self._remarks: dict[str, str] = {}
+        self._counts: Counter[str] = Counter()
 
     def remarks(self) -> list[str]:
         """Return the remarks on all rows so far."""
-        lines = []
-        for row, text, count in self._remarked.values():
-            tail = f" and {count - 1:,} more" if count > 1 else ""
-            lines.append(f"{self.table.counts} {row:,}{tail}: {text}")
-        return lines
+        more = {name: count - 1 for name, count in self._counts.items() if count > 1}
+        return [
+            f"{text} ({more[name]:,} rows more)" if name in more else text
+            for name, text in self._remarks.items()
+        ]
 
     def solve(self, block: Block) -> dict[str, Column]:
         """Return a block with its results."""
@@ -205,25 +207,27 @@ class Solver:
             self.solved.ended += int(np.sum(~np.isin(results["ERROR"], ["", ZERO_DETERMINANT])))
         columns: dict[str, Column] = {}
         for heading, column in block.columns.items():
-            if heading not in self.names:
+            name, _ = heading_name(heading)
+            if name not in SCENE:
                 columns[heading] = column
             elif not self.results_only:
-                columns[heading] = self._output_column(rows, self.names[heading])
+                columns[heading] = self._output_column(rows, name)
+        view = self.case.view
         for name, values in results.items():
-            if name in RESULTS:
-                columns[self.view.heading(name)] = self.view.shown(name, values)
-            else:
-                columns[name] = values
+            is_result = name in RESULTS
+            columns[view.heading(name) if is_result else name] = (
+                view.shown(name, values) if is_result else values
+            )
         return columns
 
     def _read(self, block: Block) -> _Rows:
         """Return the rows of a block: as columns of numbers, and as cases where a row has anything
         else."""
-        cells = {name: block.columns[heading] for name, heading in self.columns.items()}
+        cells = {name: block.columns[self.headings[name][0]] for name in self.columns}
         shown = {name: plain_numbers(column) for name, column in cells.items()}
         values = {n: np.full(len(block.rows), self.constants.get(n, math.nan)) for n in SCENE}
         for name, numbers in shown.items():
-            factor, offset = map(float, self.view.map(name, self.units[name]))
+            factor, offset = map(float, self.maps[name])
             values[name] = offset + factor * numbers
         is_other = np.zeros(len(block.rows), bool)
         for name in SCENE:
@@ -240,25 +244,19 @@ class Solver:
             except UserError as error:
                 rows.bad[at] = str(error)
         for at, case in rows.cases.items():
-            for name, value in {**_POINT_NUMBERS, **case.numbers}.items():
-                values[name][at] = value
+            for name, text in case.texts.items():
+                values[name][at] = float(text)
         return rows
 
     def _read_row(self, rows: _Rows, at: int) -> Case:
         """Return a row as a case. Raises UserError."""
         where = self.table.place(rows.numbers[at])
-        cells = {n: _entry(column[at], self.units[n]) for n, column in rows.cells.items()}
-        case = Case.of({**self.case.written, **cells}, where, self.view)
-        if case.view != self.view:
-            raise UserError("has units; expected them in the headings, or --units", where)
-        lacking: set[str] = set()
-        if case.omitted and not self.is_applesoft:
-            _, lacks = evaluate({"WA": 0.0, "WB": 0.0, **case.numbers}, self.results)
-            lacking.update(*lacks.values())
+        cells = {n: _entry(column[at], self.headings[n][1]) for n, column in rows.cells.items()}
+        case = Case.of({**self.case.written, **cells}, where, self.case.view)
         for name in SCENE:
-            if name not in case.texts or name in lacking:
+            if name not in case.texts:
                 raise UserError(f"{name} is empty; expected a number", where)
-            if name in case.ranges and name in cells:
+            if name in cells and name in case.ranges:
                 raise UserError(f"{name} = {quoted(cells[name])}: expected one number", where)
             if self.is_applesoft and case.texts[name] == "INF":
                 raise UserError(f"{name} = inf cannot be typed; expected a number", where)
@@ -266,11 +264,9 @@ class Solver:
 
     def _solve(self, rows: _Rows) -> dict[str, NDArray[Any]]:
         """Return the results in double precision."""
-        for name, mask, words in impossible(rows.values):
-            for at in np.flatnonzero(mask).tolist():
-                digits = to_text(float(rows.values[name][at]))
-                place = self.table.place(rows.numbers[at])
-                rows.bad.setdefault(at, f"{place}: {name} = {digits} {words}")
+        usable, _ = evaluate(rows.values, "fit")
+        for at in np.flatnonzero(usable["fit"] == 0).tolist():
+            rows.bad.setdefault(at, f"{self.table.place(rows.numbers[at])}: {UNUSABLE}")
         return solve(rows.values, self.results)
 
     def _replay(self, rows: _Rows) -> dict[str, NDArray[Any]]:
@@ -287,13 +283,12 @@ class Solver:
         """Return a column as the digits typed into the 1988 program."""
         texts = [self.case.texts.get(name, "6")] * len(rows.numbers)
         if name in rows.cells:
+            factor, offset = self.maps[name]
             texts = [_entry(cell, "").upper() for cell in rows.cells[name]]
             for at in (*rows.cases, *rows.bad):
                 texts[at] = "6"
-            factor, offset = self.view.map(name, self.units[name])
             if factor != 1 or offset:
-                exact = (Amount.exactly(to_double(text), text) for text in texts)
-                texts = [amount.mapped(factor, offset).typed for amount in exact]
+                texts = [_base_digits(text, factor, offset) for text in texts]
         for at, case in rows.cases.items():
             texts[at] = case.texts[name]
         return texts
@@ -303,22 +298,23 @@ class Solver:
         """Count the rows with implausible values."""
         courses, _ = evaluate(rows.values, ["HA", "HB"])
         by_vehicle = {name[1]: angles for name, angles in courses.items()}
-        for name, where, words in implausible(rows.values, self.view, by_vehicle):
+        for name, where, words in implausible(rows.values, self.case.view, by_vehicle):
             places = np.flatnonzero(where)
             if places.size and name in rows.cells:
-                at = int(places[0])
-                first = [rows.numbers[at], f"{name} = {rows.cells[name][at]}: {words}", 0]
-                self._remarked.setdefault(name, first)[2] += places.size
+                place = self.table.place(rows.numbers[places[0]])
+                text = f"{place}: {name} = {rows.cells[name][int(places[0])]}: {words}"
+                self._remarks.setdefault(name, text)
+                self._counts[name] += places.size
 
     def _output_column(self, rows: _Rows, name: str) -> Column:
-        """Return a column of the scene for the output."""
-        if self.as_text and name in rows.cells:
-            return rows.cells[name]
-        factor, offset = map(float, self.view.map(name, self.units[name]))
-        numbers = (rows.values[name] - offset) / factor + 0.0  # no -0
-        numbers[[at for at, case in rows.cases.items() if name in case.omitted]] = math.nan
-        shown = rows.shown.get(name, numbers)
-        return np.where(np.isfinite(shown), shown, numbers)
+        """Return a column of the scene for the output: as it is in the file if it has texts."""
+        if name not in rows.cells:
+            factor, offset = map(float, self.maps[name])
+            return (rows.values[name] - offset) / factor
+        column, numbers = rows.cells[name], rows.shown[name]
+        others = np.flatnonzero(~np.isfinite(numbers)).tolist()
+        has_texts = self.as_text or any(_entry(column[at], "") for at in others)
+        return column if has_texts else numbers
 
 
 class _Rows(NamedTuple):
@@ -365,29 +361,20 @@ def _double(cell: Any) -> float:
         return math.nan
 
 
-def read_headings(
-    names: Sequence[str], view: View, measured: Collection[str] = SCENE
-) -> tuple[dict[str, tuple[str, str]], View]:
-    """Return heading and symbol of the unit by quantity, and the view of the table: the one given,
-    else with the system that the units of ``measured`` quantities name.
+def _base_digits(text: str, factor: Fraction, offset: Fraction) -> str:
+    """Return the digits of a number as shown in base units."""
+    number: Any = exact(text) if to_double(text) else 0
+    return Amount.exactly(number, text).mapped(factor, offset).typed
 
-    Raises UserError for two columns of one quantity, for a unit that does not measure it, and where
-    only some headings have units."""
+
+def read_headings(names: Sequence[str], where: str | None = None) -> dict[str, tuple[str, str]]:
+    """Return heading and unit, "" without one, by quantity. Raises UserError for two columns of one
+    quantity."""
     found: dict[str, tuple[str, str]] = {}
     for heading in names:
-        name, symbol = heading_name(heading)
+        name, unit = heading_name(heading)
         if name in found:
-            raise UserError(f"{found[name][0]} and {heading} are two columns of {name}")
+            raise UserError(f"{found[name][0]} and {heading} are two columns of {name}", where)
         if name:
-            found[name] = heading, symbol
-    rules = {n: quantity(n).unit for n in found if n in measured}
-    units = {n: unit_of(rule, found[n][1]) for n, rule in rules.items() if found[n][1]}
-    bare = [n for n, rule in rules.items() if is_measured(rule) and n not in units]
-    system = view.units or system_using(units.values())
-    if system and bare and not view.units:
-        raise UserError(
-            f"some headings have units, and {bare[0]} has none; expected "
-            f"{View(system).heading(bare[0])}, or --units {system} for columns without"
-        )
-    headings = {n: (h, units[n].symbol if n in units else "") for n, (h, _) in found.items()}
-    return headings, replace(view, units=system)
+            found[name] = heading, unit
+    return found

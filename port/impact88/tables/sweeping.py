@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from math import isfinite, nan, prod
+from math import prod
 
 import numpy as np
 
 from ..cases.case import Case
-from ..decimals import to_text
+from ..decimals import to_double, to_text
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from .textformats import Table, blocks_of
@@ -25,7 +25,7 @@ def sweep_table(case: Case, ranges: Mapping[str, str]) -> Table:
     case : Case
         The scene.
     ranges : mapping of str to str
-        LOW:HIGH:COUNT by name; the ends are as in a file, and the last name runs fastest.
+        LOW:HIGH:COUNT by name, in the units of the case; the last name runs fastest.
 
     Returns
     -------
@@ -38,23 +38,23 @@ def sweep_table(case: Case, ranges: Mapping[str, str]) -> Table:
         For a text that is no range, and for more than 10 million rows.
     """
     check_names(ranges, tuple(SCENE), "value of a scene", "--sweep")
-    values = {case.view.heading(n): _values(case, n, text) for n, text in ranges.items()}
+    values = {case.view.heading(n): _values(n, text) for n, text in ranges.items()}
     if prod(map(len, values.values())) > MAX_SCENES:
         raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
     rows = enumerate(product(*values.values()), 1)
     return Table([*values], blocks_of([*values], rows), case.source)
 
 
-def _values(case: Case, name: str, text: str) -> list[str]:
-    """Return the texts that a value runs through, as shown. Raises UserError."""
-    fault = f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51"
-    *ends, count = text.split(":")
-    if len(ends) != 2 or not count.isdecimal() or not 1 <= int(count) <= MAX_SCENES:
-        raise UserError(fault)
-    shown = []
-    for end in ends:
-        case = case.with_({name: end}, f"--sweep {name}")
-        if name in case.ranges or not isfinite(case.numbers.get(name, nan)):
-            raise UserError(fault)
-        shown.append(case.view.shown(name, case.numbers[name]))
-    return [to_text(x) for x in np.linspace(shown[0], shown[1], int(count)).tolist()]
+def _values(name: str, text: str) -> list[str]:
+    """Return the texts that a value runs through. Raises UserError."""
+    try:
+        low, high, count = text.split(":")
+        if not 1 <= int(count) <= MAX_SCENES:
+            raise ValueError
+        values = np.linspace(to_double(low), to_double(high), int(count))
+    except ValueError:
+        fault = (
+            f"{name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51, in units of the file"
+        )
+        raise UserError(fault, "--sweep") from None
+    return [to_text(value) for value in values.tolist()]

@@ -191,34 +191,31 @@ def read_json(path: str, number: type[str] | None = None) -> Table:
     """Return the table in a file of JSON Lines, one object for each row. ``number``: str to keep
     the digits of numbers, as texts. Raises UserError."""
     where, source = display_name(path), Source(path)
-    objects = _json_objects(io.BufferedReader(source), where, number)
-    first = next(objects, (1, {}))
-    keys = list(first[1])
-    rows = ((line, [row.get(key) for key in keys]) for line, row in chain([first], objects))
-    names = check_headings(keys, where)
-    return Table(names, blocks_of(names, rows), where, "line", source.extent)
+    lines = enumerate(iter(partial(io.BufferedReader(source).readline, LONGEST_LINE), b""), 1)
+    rows = (
+        (at, _json_row(text, f"{where}, line {at}", number)) for at, text in lines if text.strip()
+    )
+    first = next(rows, (1, {}))
+    names = check_headings([*first[1]], where)
+
+    def cells() -> Iterator[tuple[int, list[Any]]]:
+        for at, row in chain([first], rows):
+            if unknown := row.keys() - first[1].keys():
+                fault = f"{quoted(min(unknown))} is not in the first row; expected its names"
+                raise UserError(fault, f"{where}, line {at}")
+            yield at, [row.get(name) for name in first[1]]
+
+    return Table(names, blocks_of(names, cells()), where, "line", source.extent)
 
 
-def _json_objects(
-    file: IO[bytes], where: str, numeral: type[str] | None
-) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the objects of a file with their lines. Raises UserError for a line that is no flat
-    object, or has a name that the first has not."""
-    names: set[str] = set()
-    for number, line in enumerate(iter(partial(file.readline, LONGEST_LINE), b""), 1):
-        if not line.strip():
-            continue
-        row = None
-        with suppress(ValueError, RecursionError):
-            row = json.loads(line.decode("utf-8-sig"), parse_float=numeral, parse_int=numeral)
-        if not isinstance(row, dict) or any(type(x) in (dict, list, bool) for x in row.values()):
-            fault = f"is {quoted(line[:99].decode(errors='replace'))}; expected a JSON object"
-            raise UserError(f"{fault} of numbers and texts for each row", f"{where}, line {number}")
-        names = names or {*row}
-        if unknown := {*row} - names:
-            fault = f"{quoted(min(unknown))} is not in the first row; expected its names"
-            raise UserError(fault, f"{where}, line {number}")
-        yield number, row
+def _json_row(line: bytes, where: str, numeral: type[str] | None) -> dict[str, Any]:
+    """Return the flat object in a line. Raises UserError."""
+    with suppress(ValueError, RecursionError):
+        row = json.loads(line.decode("utf-8-sig"), parse_float=numeral, parse_int=numeral)
+        if isinstance(row, dict) and not any(type(x) in (dict, list, bool) for x in row.values()):
+            return row
+    fault = f"is {quoted(line[:99].decode(errors='replace'))}; expected a JSON object"
+    raise UserError(f"{fault} of numbers and texts for each row", where)
 
 
 # -- writing
