@@ -201,6 +201,12 @@ def test_angles_that_enter_as_a_sum_are_both_named(
         )
 
 
+def test_an_angle_is_open_if_the_other_of_its_sum_was_read_with_doubt() -> None:
+    page = impact88.run({**impact88.sample(1), "TB": "29", "PB": "-32"}).page
+    assert single(page.replace(" 29 ", " 29*1) ")).verdict is Verdict.INCOMPLETE
+    assert single(page.replace(" -32 ", " -33 ")).verdict is Verdict.DIFFERS
+
+
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_lost_numbers_never_differ_and_never_are_identical(number: int) -> None:
     page = impact88.run(impact88.sample(number)).page

@@ -21,6 +21,7 @@ from .page import (
     CELLS,
     INPUTS,
     NAMES,
+    PARTNERS,
     PROMPTS,
     REPLIES,
     ROW_OF,
@@ -379,7 +380,7 @@ class Comparison:
         where inputs were not read; where more of them differ than an alteration
         explains, while an input is in doubt or a machine read the page; and on such a page unless
         each is one digit for another in which the reader does not err elsewhere. A lost sign or
-        point is a doubt there.
+        point is a doubt there. An angle is open if that with which it enters as a sum is in doubt.
         """
         words = [finding for finding in findings if finding.kind is Kind.MISREAD]
         names = {finding.name for finding in words}
@@ -392,14 +393,16 @@ class Comparison:
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         foreign = "".join(finding.read for finding in findings if finding.kind is Kind.FOREIGN)
-        is_unsure = is_machine_read or any(map(_is_unsure, findings))
+        unsure = {finding.name for finding in findings if _is_unsure(finding)}
+        is_unsure = is_machine_read or bool(unsure)
         is_unsure |= any(map(self.reading.is_apart, INPUTS))
         is_unsure |= sum(map(str.isdigit, foreign)) >= MAX_FOREIGN_DIGITS
         is_open = is_unsure and len(numbers) + len(unread) > MAX_ALTERED
         is_open |= any(finding.name in INPUTS for finding in unread)
         swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
         is_open |= is_machine_read and ("" in swaps or len({*swaps}) < len(swaps))
-        return [f._replace(kind=Kind.OPEN) if is_open and f in numbers else f for f in findings]
+        open_numbers = [f for f in numbers if is_open or PARTNERS.get(f.name) in unsure]
+        return [f._replace(kind=Kind.OPEN) if f in open_numbers else f for f in findings]
 
 
 def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:

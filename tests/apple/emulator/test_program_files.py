@@ -117,6 +117,7 @@ STATEMENTS = st.text(
 ) | st.sampled_from([f"{word} " for word in KEYWORDS])
 
 
+@example({0: ['"', " "]})
 @example({0: ['"'], 1: ["<"]})
 @example({0: [":"], 1: ["<"]})
 @example({1000: ["END", "0" * 26, '"000 ']})

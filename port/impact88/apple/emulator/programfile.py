@@ -178,7 +178,7 @@ LAYOUTS = (Layout(breaks=False), Layout(breaks=True, width=SCREEN_WIDTH), Layout
 
 def _listed_lines(rows: Sequence[Row]) -> list[Line] | None:
     """Return the program that LIST prints as these rows, None if there is none."""
-    texts = [row.text.rstrip(" ") for row in rows]
+    texts = [row.text for row in rows]
     return next((lines for layout in LAYOUTS if (lines := _lines_by(layout, texts))), None)
 
 
@@ -195,7 +195,8 @@ def _lines_by(layout: Layout, texts: Sequence[str]) -> list[Line] | None:
         line = int(match[1]), tokens
         is_next = (lines[-1][0] if lines else -1) < line[0] <= LAST_LINE
         can_be_typed = tokenise(detokenise(tokens), folded=True) == tokens
-        if not (is_next and can_be_typed and layout.rows(*line) == [*texts[start:stop]]):
+        listed = [text.rstrip(" ") for text in texts[start:stop]]
+        if not (is_next and can_be_typed and layout.rows(*line) == listed):
             return None
         lines.append(line)
     return lines
