@@ -190,7 +190,7 @@ def _lines_by(layout: Layout, texts: Sequence[str]) -> list[Line] | None:
         text = layout.join(texts[start:stop])
         match = _NUMBER.match(text)
         tokens = _decode(text[match.end() :]) if match else None
-        if match is None or tokens is None or len(tokens) > MAX_LISTED_TOKENS:
+        if match is None or not tokens or len(tokens) > MAX_LISTED_TOKENS:
             return None
         line = int(match[1]), tokens
         is_next = (lines[-1][0] if lines else -1) < line[0] <= LAST_LINE
