@@ -69,6 +69,8 @@ def test_options_name_the_view_of_a_file_that_names_none() -> None:
     text = "UX = 30\nUY = 1"
     assert Case.loads(text, units="us", axes="sae").view == View("us", "sae")
     assert Case.loads('units = "si"\n' + text, units="us").view == View("si")
+    with pytest.raises(UserError, match="axes = 'listingsae'; expected listing, sae"):
+        Case.loads('axes = "listingsae"')
     assert Case.loads('axes = "listing"\n' + text, axes="sae").view == View()
     assert Case.loads('TA = "0.5 rad"\nMB = "inf"').view == View()
 

@@ -175,12 +175,14 @@ class View:
             For a word that is not among the choices.
         """
         chosen = {
-            n: (word or "").strip().lower().removeprefix("listing") for n, word in words.items()
+            name: re.sub("^listing$", "", (word or "").strip().lower())
+            for name, word in words.items()
         }
         for name, word in chosen.items():
             if word and word not in _CHOICES[name]:
-                choices = ", ".join(_CHOICES[name])
-                raise UserError(f"{name} = {quoted(words[name])}; expected {choices}")
+                raise UserError(
+                    f"{name} = {quoted(words[name])}; expected {', '.join(_CHOICES[name])}"
+                )
         return cls(**chosen)
 
     def base_size(self, rule: str) -> Fraction:

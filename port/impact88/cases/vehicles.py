@@ -1,5 +1,5 @@
-"""What vehicles have: estimates of a yaw inertia that was not measured, and limits beyond which a
-value is implausible.
+"""Vehicles: estimates of a yaw inertia that was not measured, and limits beyond which a value is
+implausible.
 
 ``IA = "estimate"`` (also ``"estimate +- 20 %"``) takes one of two rules:
 
@@ -27,7 +27,7 @@ from .units import POUND, View
 
 ESTIMATE = "estimate"
 SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
-"""Length and width of each vehicle: for an estimate of its inertia, and its outline in drawings."""
+"""Length and width of each vehicle, for an estimate of its inertia."""
 MIN_WEIGHT = 1500  # lb; cars of the fitted sample lie between these two
 MAX_WEIGHT = 6000  # lb
 SLOPE = 1.03  # ft-s² for each lb, as published

@@ -172,8 +172,8 @@ class Reading:
 
     @cached_property
     def extra_blanks(self) -> dict[str, tuple[float, float]]:
-        """How many more blanks there are before and after each number, for each that the program
-        prints, than at most numbers of the page; infinite at the edges of a line.
+        """Surplus of blanks before and after each number, for each blank that the program prints,
+        over that of most numbers of the page; infinite at the edges of a line.
 
         Where there are more, the number may have lost its beginning, or its end."""
         text = f"{self.text}\n"
