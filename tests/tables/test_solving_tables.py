@@ -14,20 +14,28 @@ from impact88.errors import UserError
 from impact88.mechanics.solve import solve
 from impact88.names import SCENE
 from impact88.status import Status
-from impact88.tables.solving import Solver, solve_table
+from impact88.tables.solving import Solver
 from impact88.tables.sweeping import sweep_table
 from impact88.tables.textformats import Block, Table
 
 SAMPLE = dict(impact88.sample(1))
 CHAPTER = View("chapter")
+PLAIN = Case.of({})
 NUMBERS = {name: float(text) for name, text in SAMPLE.items()}
 
 
-def solve_columns(columns: dict[str, list[object]], results: str, **options: object):
+def solve_columns(
+    columns: dict[str, list[object]],
+    results: str,
+    case: Case = PLAIN,
+    as_text: bool = True,
+    **options: object,
+):
     """Return results by heading, and bad rows."""
-    solver = Solver(Table([*columns], iter(())), results.split(), **options)
-    out = solver.solve(Block(columns, range(1, 1 + len(next(iter(columns.values()))))))
-    return out, solver.solved.listed, solver
+    solver = Solver(Table([*columns], iter(())), case, results.split(), **options)
+    count = len(next(iter(columns.values())))
+    out = solver.solve(Block([*columns.values()], range(1, 1 + count)), as_text)
+    return out, solver.listed, solver
 
 
 def scene(count: int = 1, **columns: list[object]) -> dict[str, list[object]]:
@@ -206,7 +214,7 @@ def test_sweeps(tmp_path: Path) -> None:
     target = tmp_path / "out.csv"
     swept = sweep_table(case, {"MU": "0:1:3", "UX": "-29.3:-14.7:2"})
     calls = []
-    solve_table(swept, str(target), ["VAX"], case=case, progress=lambda *x: calls.append(x))
+    Solver(swept, case, ["VAX"]).write(str(target), lambda *x: calls.append(x))
     with target.open() as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == ["MU", "UX [ft/s]", "VAX [ft/s]"]
@@ -214,7 +222,7 @@ def test_sweeps(tmp_path: Path) -> None:
     reference = solve({**NUMBERS, "MU": 0.5, "UX": -14.7}, "VAX")["VAX"]
     assert float(rows[3]["VAX [ft/s]"]) == pytest.approx(reference, rel=1e-13)
     assert calls == [(6, None)]
-    solve_table(sweep_table(case, {}), str(target), ["VAX"], case=case)
+    Solver(sweep_table(case, {}), case, ["VAX"]).write(str(target))
     assert target.read_text().splitlines()[0] == "VAX [ft/s]"
     for text in ("0:1", "0:1:0", "0:1:x", "0:much:3", "0:1:99999999", "0 mph:1:2"):
         with pytest.raises(UserError, match="--sweep"):
@@ -225,10 +233,11 @@ def test_bad_rows_are_listed_and_counted(tmp_path: Path) -> None:
     rows = [",".join({**SAMPLE, "UX": "x" if at % 2 else "1"}.values()) for at in range(60)]
     source, target = tmp_path / "in.csv", tmp_path / "out.csv"
     source.write_text("\n".join([",".join(SAMPLE), *rows]))
-    outcome = solve_table(str(source), str(target), ["VAX"])
-    assert (outcome.rows, outcome.bad, len(outcome.listed)) == (60, 30, 21)
-    assert "in.csv, line 3: UX = 'x' is not an amount" in outcome.listed[0]
-    assert outcome.listed[-1] == "30 rows could not be used, these first"
+    solver = Solver(str(source), PLAIN, ["VAX"])
+    solver.write(str(target))
+    assert (solver.rows, solver.bad, len(solver.listed)) == (60, 30, 21)
+    assert "in.csv, line 3: UX = 'x' is not an amount" in solver.listed[0]
+    assert solver.listed[-1] == "30 rows could not be used, these first"
     with target.open() as file:
         assert [row["VAX"] == "" for row in csv.DictReader(file)] == [False, True] * 30
 

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.cases import Case, View
+from impact88.cases import Case
 from impact88.errors import UserError
 from impact88.mechanics.solve import solve
 from impact88.names import SCENE
 from impact88.tables import textformats
 from impact88.tables.engine import read_table, write_table
-from impact88.tables.solving import solve_table
+from impact88.tables.solving import Solver
 
 SAMPLES = [dict(impact88.sample(number)) for number in (1, 2, 3)]
 FORMATS = ("csv", "jsonl", "parquet", "xlsx")
@@ -41,11 +41,11 @@ def read_rows(path: Path) -> list[dict[str, str]]:
 
 
 def columns_of(path: Path) -> dict[str, list[Any]]:
-    columns: dict[str, list[Any]] = {}
-    for block in read_table(str(path)).blocks:
-        for name, column in block.columns.items():
-            cells = column.to_list() if hasattr(column, "to_list") else list(column)
-            columns.setdefault(name, []).extend(cells)
+    table = read_table(str(path))
+    columns: dict[str, list[Any]] = {name: [] for name in table.names}
+    for block in table.blocks:
+        for cells, column in zip(columns.values(), block.columns, strict=True):
+            cells.extend(column.to_list() if hasattr(column, "to_list") else column)
     return columns
 
 
@@ -54,9 +54,17 @@ def write(path: Path, text: str) -> Path:
     return path
 
 
+def solve_table(
+    source: Path, target: Path, *results: str, units: str = "", **options: Any
+) -> Solver:
+    solver = Solver(str(source), Case.of({"units": units}), results, **options)
+    solver.write(str(target))
+    return solver
+
+
 def test_every_format_has_the_same_numbers(tmp_path: Path) -> None:
     source = write(tmp_path / "in.csv", csv_text(SAMPLES))
-    solve_table(str(source), str(tmp_path / "out.csv"))
+    solve_table(source, tmp_path / "out.csv")
     results = columns_of(tmp_path / "out.csv")
     assert results["DA"] == [sample["DA"] for sample in SAMPLES]
     for at, sample in enumerate(SAMPLES):
@@ -64,10 +72,10 @@ def test_every_format_has_the_same_numbers(tmp_path: Path) -> None:
         assert (float(results["VAX"][at]), float(results["LOSS"][at])) == (*reference.values(),)
     for kind in FORMATS[1:]:
         path = tmp_path / f"out.{kind}"
-        solve_table(str(source), str(path))
+        solve_table(source, path)
         copy = tmp_path / f"again_{kind}.csv"
-        solve_table(str(path), str(copy), ["VAX", "KI"])
-        solve_table(str(path), str(path), ["KI"], arithmetic="applesoft")
+        solve_table(path, copy, "VAX", "KI")
+        solve_table(path, path, "KI", arithmetic="applesoft")
         floats = impact88.replay({n: [s[n] for s in SAMPLES] for n in SCENE}).floats("KI")
         assert columns_of(path)["KI"] == pytest.approx(floats.tolist(), rel=1e-15)
         for name, cells in columns_of(copy).items():
@@ -126,7 +134,7 @@ def test_csv_refused(tmp_path: Path, layout: str, message: str) -> None:
     data = lines.replace("ROW", row).replace(" ", "\n")
     path.write_bytes(data.encode(errors="surrogateescape"))
     with pytest.raises(UserError) as error:
-        solve_table(str(path), str(target))
+        solve_table(path, target)
     assert message in str(error.value)
     assert "bad.csv" in str(error.value)
     assert not target.exists()
@@ -140,7 +148,7 @@ def test_layouts_of_csv(tmp_path: Path, ending: str) -> None:
 
     def results(data: bytes) -> list[str]:
         (tmp_path / "in.csv").write_bytes(data)
-        outcome = solve_table(str(tmp_path / "in.csv"), str(target), ["VAX"])
+        outcome = solve_table(tmp_path / "in.csv", target, "VAX")
         assert (outcome.rows, outcome.bad) == (3, 0)
         assert float(read_rows(target)[0]["DA"]) == float(SAMPLES[0]["DA"])
         return [row["VAX"] for row in read_rows(target)]
@@ -153,7 +161,7 @@ def test_layouts_of_csv(tmp_path: Path, ending: str) -> None:
         assert results(b"\xef\xbb\xbf" + text.replace("\n", ending).encode()) == reference
     lines = plain.splitlines()
     (tmp_path / "in.csv").write_text(lines[0])
-    assert solve_table(str(tmp_path / "in.csv"), str(target), arithmetic="applesoft").rows == 0
+    assert solve_table(tmp_path / "in.csv", target, arithmetic="applesoft").rows == 0
     gaps = [lines[0], "", lines[1], "," * 20, "", *lines[2:], "," * 20, ""]
     assert results(ending.join(gaps).encode()) == reference
     in_quotes = plain.replace(SAMPLES[0]["DA"], f'"{SAMPLES[0]["DA"]}"')
@@ -183,11 +191,11 @@ def test_json_keeps_digits(tmp_path: Path) -> None:
     numbers = {n: float(t) for n, t in scene.items() if n != "UX"}
     text = json.dumps({"id": 7, "car": "Infinity", **numbers}).replace("}", ', "UX": -90315.88170}')
     target = tmp_path / "out.jsonl"
-    source = str(write(tmp_path / "in.jsonl", text))
-    solve_table(source, str(target), ["KI"])
+    source = write(tmp_path / "in.jsonl", text)
+    solve_table(source, target, "KI")
     row = json.loads(target.read_text())
     assert (row["id"], row["car"]) == (7, "Infinity")
-    solve_table(source, str(target), ["KI"], arithmetic="applesoft")
+    solve_table(source, target, "KI", arithmetic="applesoft")
     row = json.loads(target.read_text())
     reference = impact88.replay({**{n: str(float(t)) for n, t in scene.items()}, "UX": scene["UX"]})
     assert row["KI"] == reference.floats("KI")[0]
@@ -207,7 +215,7 @@ def test_workbooks(tmp_path: Path) -> None:
     sheet.write_row(5, 1, [30.5, *[1.1] * 19])
     book.close()
     target = tmp_path / "out.xlsx"
-    outcome = solve_table(str(path), str(target), ["VAX"], case=Case.of({}, view=View("us")))
+    outcome = solve_table(path, target, "VAX", units="us")
     assert (outcome.rows, outcome.bad) == (2, 0)
     columns = columns_of(target)
     assert columns["UX [mph]"] == ["25 mph", "30.5"]
