@@ -19,7 +19,7 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Literal, NamedTuple, cast
+from typing import Any, Literal, NamedTuple
 
 from ..decimals import negated, to_text
 from ..errors import UserError, quoted
@@ -237,19 +237,17 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
     try:
         if len(words) > MAX_LENGTH:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
-        if words.startswith("skid"):
-            return _skid(name, words, view)
-        amount = _amount(name, words, view)
+        amount = (_skid if words.startswith("skid") else _amount)(name, words, view)
+        if name in SKIDDING and amount.limits(0.0)[0] < 0:
+            course = f"H{name[1:]} turned by 180"
+            raise UserError(f"a speed is not negative; expected 0 or more, or {course}")
+        return amount
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except OverflowError:
         raise UserError(f"{entry} is beyond the range of doubles") from None
     except ValueError:
         raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
-    if name in SKIDDING and amount.limits(0.0)[0] < 0:
-        course = f"H{name[1:]} turned by 180"
-        raise UserError(f"{entry}: a speed is not negative; expected 0 or more, or {course}")
-    return amount
 
 
 def normalize(text: str) -> str:
@@ -258,7 +256,7 @@ def normalize(text: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
+def parse(rule: str, words: str) -> tuple[Any, tuple[Number, ...]]:
     """Return the kind of a `normalize`d amount, one of `Amount` or "around" for a half width, and
     its numbers.
 
@@ -321,7 +319,7 @@ def _amount(name: str, words: str, view: View) -> Amount:
         sd = high
         reach = math.inf if sd else 0
         low, high = value - reach, value + reach
-    amount = Amount(value, low, high, cast(Kind, kind), sd, digits, name == "MU" and bool(units))
+    amount = Amount(value, low, high, kind, sd, digits, name == "MU" and bool(units))
     return amount.mapped(*view.map(name, unit.symbol))
 
 
