@@ -67,11 +67,11 @@ def test_files(tmp_path: Path) -> None:
 
 def test_options_name_the_view_of_a_file_that_names_none() -> None:
     text = "UX = 30\nUY = 1"
-    assert Case.loads(text, units="us", axes="sae").view == View("us", "sae")
-    assert Case.loads('units = "si"\n' + text, units="us").view == View("si")
+    assert Case.loads(text, view=View("us", "sae")).view == View("us", "sae")
+    assert Case.loads('units = "si"\n' + text, view=View("us")).view == View("si")
     with pytest.raises(UserError, match="axes = 'listingsae'; expected listing, sae"):
         Case.loads('axes = "listingsae"')
-    assert Case.loads('axes = "listing"\n' + text, axes="sae").view == View()
+    assert Case.loads('axes = "listing"\n' + text, view=View(axes="sae")).view == View()
     assert Case.loads('TA = "0.5 rad"\nMB = "inf"').view == View()
 
 

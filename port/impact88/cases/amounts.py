@@ -174,9 +174,15 @@ class Amount:
         text = "" if offset or abs(factor) != 1 else self.text
         if text and factor < 0 and value:
             text = negated(text)
-        kind = self.kind if ends[0] != ends[1] else "exact"
-        sd = float(abs(factor) * Fraction(self.sd))
-        return Amount(value, min(ends), max(ends), kind, sd, text, self.share)
+        return Amount(
+            value,
+            min(ends),
+            max(ends),
+            self.kind if ends[0] != ends[1] else "exact",
+            float(abs(factor) * Fraction(self.sd)),
+            text,
+            self.share,
+        )
 
 
 # -- the notation
@@ -239,8 +245,9 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
         amount = (_skid if words.startswith("skid") else _amount)(name, words, view)
         if name in SKIDDING and amount.limits(0.0)[0] < 0:
-            course = f"H{name[1:]} turned by 180"
-            raise UserError(f"a speed is not negative; expected 0 or more, or {course}")
+            raise UserError(
+                f"a speed is not negative; expected 0 or more, or H{name[1:]} turned by 180"
+            )
         return amount
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
@@ -303,8 +310,9 @@ def _amount(name: str, words: str, view: View) -> Amount:
         raise UserError("expected a number without %; MU takes shares of the critical")
     unit = units[0] if units else shown_unit(rule, view.units)
     if "," in words and {each.side for each in (unit, *units)} != {"us"}:
-        digits = words.replace(",", "")
-        raise UserError(f"the comma may be a decimal one; expected {digits}, or a decimal point")
+        raise UserError(
+            f"the comma may be a decimal one; expected {words.replace(',', '')}, or a decimal point"
+        )
     values: list[Any] = [  # exact fractions, until they are mapped
         number.value * (number.unit or unit).size / unit.size for number in numbers
     ]

@@ -84,25 +84,25 @@ class Case:
     date: str
 
     @classmethod
-    def load(cls, path: str, **view: str | None) -> Case:
+    def load(cls, path: str, view: View = PLAIN) -> Case:
         """Return the case in a TOML file.
 
         Parameters
         ----------
         path : str
             The file, ``-`` for standard input.
-        **view : str or None
-            ``units``, ``axes`` and ``headings`` of a file that names none.
+        view : View, optional
+            The view of a file that names none.
 
         Raises
         ------
         UserError
             For a file that cannot be read as a case; the message names file, line and entry.
         """
-        return cls.loads(read_text(path), display_name(path), **view)
+        return cls.loads(read_text(path), display_name(path), view)
 
     @classmethod
-    def loads(cls, text: str, source: str = "scene", **view: str | None) -> Case:
+    def loads(cls, text: str, source: str = "scene", view: View = PLAIN) -> Case:
         """Return the case in the text of a TOML file.
 
         Parameters
@@ -111,7 +111,7 @@ class Case:
             The document.
         source : str, default "scene"
             Its name in messages.
-        **view : str or None
+        view : View, optional
             See `load`.
 
         Raises
@@ -120,7 +120,7 @@ class Case:
             See `load`.
         """
         texts, places = read_toml(text, source)
-        return cls.of(texts, source, View.of(**view), places)
+        return cls.of(texts, source, view, places)
 
     @classmethod
     def of(
@@ -154,17 +154,13 @@ class Case:
         for name in written:
             if name.removesuffix(SOURCE) not in INPUTS and name not in ABOUT:
                 hint = did_you_mean(name, (*INPUTS, *ABOUT))
-                fault = f"{quoted(name)} is not an entry of a scene{hint}"
-                raise UserError(fault, places.get(name, source))
+                raise UserError(
+                    f"{quoted(name)} is not an entry of a scene{hint}", places.get(name, source)
+                )
         given = {"M": DEFAULT_M} | {n: text for n, text in written.items() if n in INPUTS}
         try:
-            view = View.of(**{n: written.get(n) for n in ("units", "axes", "headings")})
+            view = View.of(**written)
             amounts, remarks = _read_entries(given, view, places)
-            derived = [
-                n
-                for n, a in amounts.items()
-                if a.share or math.isnan(a.value) or given[n].startswith(ESTIMATE)
-            ]
             values = {n: a.value for n, a in amounts.items() if not math.isnan(a.value)}
             texts, more = _nominal_digits(amounts, values)
         except UserError as error:
@@ -183,7 +179,11 @@ class Case:
             (*remarks, *more),
             written,
             source,
-            tuple(derived),
+            tuple(
+                n
+                for n, a in amounts.items()
+                if a.share or math.isnan(a.value) or given[n].startswith(ESTIMATE)
+            ),
             places,
             **{name: written.get(name, "") for name in ("title", "case", "examiner", "date")},
         )
@@ -214,7 +214,7 @@ class Case:
                     middle = f"{middle} {self.view.unit(name)}".rstrip()
                 value = f"{middle} {value}"
             texts[name] = value
-        places = {**self.places, **dict.fromkeys(changes, where)} if where else self.places
+        places = {**self.places, **dict.fromkeys(changes, where or self.source)}
         return Case.of(texts, self.source, places=places)
 
     @property
@@ -236,16 +236,14 @@ class Case:
             rows = [part.replace(",", " ").split() for part in text.split(";") if part]
             return {(first, second): float(number) for first, second, number in rows}
         except ValueError:
-            message = f'correlations = {quoted(text)}; expected such as "UX,VX 0.5; MA,IA 0.9"'
-            raise UserError(message, self.place("correlations")) from None
-
-    def place(self, name: str) -> str:
-        """Return the place of an entry for messages: file and line, or an option."""
-        return self.places.get(name, self.source)
+            raise UserError(
+                f'correlations = {quoted(text)}; expected such as "UX,VX 0.5; MA,IA 0.9"',
+                self.places.get("correlations", self.source),
+            ) from None
 
     def toml(self) -> str:
         """Return the case as a commented scene file, entries as written."""
-        return write_toml(self.written, view=self.view)
+        return write_toml(self.written, self.view)
 
 
 def entry_text(name: str, value: Any) -> str:
@@ -277,11 +275,11 @@ def _read_entries(given: Texts, view: View, places: Texts) -> tuple[dict[str, Am
 def _nominal_digits(entries: Amounts, values: Values) -> tuple[dict[str, str], list[str]]:
     """Return the digits of the scene's nominal values for the 1988 program, and a remark on a share
     of the critical friction. Raises UserError."""
-    computed = contact_point(values)
-    for vehicle, course in courses(values).items():  # A faces TA + 180, B faces TB
-        if f"T{vehicle}" in entries.keys() - values.keys():
-            computed[f"T{vehicle}"] = math.remainder(course + 180 * (vehicle == "A"), 360)
     texts = {name: entries[name].typed for name in values if name in SCENE}
+    computed = contact_point(values)
+    for name, course in courses(values).items():  # A faces TA + 180, B faces TB
+        if name in entries.keys() - values.keys():
+            computed[name] = math.remainder(course + 180 * (name == "TA"), 360)
     texts |= {name: to_text(value) for name, value in computed.items()}
     if "MU" not in entries or not entries["MU"].share:
         return texts, []
@@ -294,5 +292,7 @@ def _nominal_digits(entries: Amounts, values: Values) -> tuple[dict[str, str], l
         return texts, []
     share = values["MU"] * (-1 if results["gt"] > 0 else 1)  # line 400 turns it again
     texts["MU"] = to_text(share * critical)
-    percent = f"{100 * abs(share):g} % of the critical friction {abs(critical):.6g}"
-    return texts, [f"MU = {share * critical:.6g} is {percent}"]
+    return texts, [
+        f"MU = {share * critical:.6g} is {100 * abs(share):g} % of the critical friction "
+        f"{abs(critical):.6g}"
+    ]

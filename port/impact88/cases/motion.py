@@ -68,10 +68,12 @@ def velocities(values: Values) -> dict[str, tuple[float, float]]:
 
 
 def courses(values: Values) -> dict[str, float]:
-    """Return the vehicles' courses before the impact in degrees from the x axis, by "A" and "B",
+    """Return the vehicles' courses before the impact in degrees from the x axis, by "TA" and "TB",
     where they are known and the vehicle moves."""
     vectors = velocities(values)
-    return {speed[1]: vectors[speed][1] for speed in ("SA", "SB") if vectors.get(speed, (0,))[0]}
+    return {
+        f"T{speed[1]}": vectors[speed][1] for speed in ("SA", "SB") if vectors.get(speed, (0,))[0]
+    }
 
 
 def line_of_motion(entries: Amounts) -> float | None:

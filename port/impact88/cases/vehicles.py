@@ -76,8 +76,7 @@ def estimate(name: str, text: str, amounts: Amounts, view: View) -> tuple[str, s
         value = mass * sum(size**2 for size in sizes) / 12
         rule = "mass (length² + width²)/12, a uniform rectangle; 6 to 14 % high on seven cars"
     elif view.units and not sizes and MIN_WEIGHT <= pounds <= MAX_WEIGHT:
-        factor, _ = view.map(name, "lb-ft-s2")
-        value = (SLOPE * pounds - OFFSET) * float(factor)
+        value = (SLOPE * pounds - OFFSET) * float(view.map(name, "lb-ft-s2")[0])
         rule = (
             f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
             "6 to 29 % high on seven of them"
@@ -105,7 +104,7 @@ def implausible(
     view : View
         Without units, magnitudes are not looked at.
     courses : mapping of str to float or array
-        The vehicles' courses in degrees, by "A" and "B".
+        The vehicles' courses in degrees, by "TA" and "TB".
     """
     is_body = values.get("M", 6.0) != 4
     for name, value in values.items() if view.units else ():
@@ -118,15 +117,19 @@ def implausible(
             size: Any = abs(value) * float(view.base_size(rule))
             is_off = (size < low) | ((size > high) & (size < inf))
             yield name, is_off & ((rule in (MASS, VELOCITY)) | is_body), words
-    for vehicle, course in courses.items():
-        if f"T{vehicle}" in values:
-            front = values[f"T{vehicle}"] + 180.0 * (vehicle == "A")
+    for name, course in courses.items():
+        if name in values:
+            front = values[name] + 180.0 * (name == "TA")
             sideslip = abs((course - front + 180.0) % 360.0 - 180.0)
-            words = (
-                f"{vehicle} moves more than 45° off the way it faces (A faces TA + 180 and B faces "
+            yield (
+                name,
+                (sideslip > MAX_SIDESLIP) & is_body,
+                f"{name[1]} moves more than 45° off the way it faces (A faces TA + 180 and B faces "
                 "TB in the listing's axes); are velocities and headings in one convention? (axes, "
-                "headings)"
+                "headings)",
             )
-            yield f"T{vehicle}", (sideslip > MAX_SIDESLIP) & is_body, words
-    words = "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1"
-    yield "EM", (values.get("EM", 1.0) == 0) & is_body, words
+    yield (
+        "EM",
+        (values.get("EM", 1.0) == 0) & is_body,
+        "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1",
+    )

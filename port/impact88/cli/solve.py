@@ -69,8 +69,6 @@ def main(args: Args) -> int:
 
 def _solve_table(args: Args, is_table: bool) -> int:
     """Solve each row of a table, or of a case that is swept."""
-    from ..cases.case import Case
-    from ..cases.units import View
     from ..tables.solving import Solver
     from ..tables.sweeping import sweep_table
 
@@ -79,9 +77,7 @@ def _solve_table(args: Args, is_table: bool) -> int:
     table = args.file
     if is_table:
         args.file = args.scene
-    is_case = args.file or args.sample or args.set
-    empty = Case.of({}, view=View.of(units=args.units))
-    case = case_of(args) if is_case or not is_table else empty
+    case = case_of(args, not is_table)
     ranges = pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT")
     solver = Solver(
         table if is_table else sweep_table(case, ranges),

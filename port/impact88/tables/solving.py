@@ -171,7 +171,7 @@ class Solver:
             for at in np.flatnonzero(facts["fit"] == 0).tolist():
                 rows.bad.setdefault(at, f"{self.table.place(block.rows[at])}: {UNUSABLE}")
             results = solve(rows.values, self.results)
-        self._remark(rows, {"A": facts["HA"], "B": facts["HB"]})
+        self._remark(rows, {"TA": facts["HA"], "TB": facts["HB"]})
         bad = sorted(rows.bad)
         for name, values in results.items():
             values[bad] = _EMPTY.get(name, math.nan)
