@@ -242,7 +242,7 @@ class Solver:
         from ..program.replay import replay
 
         outcome = replay({name: self._typed(rows, name) for name in SCENE})
-        self.ended += int(np.count_nonzero(outcome.error))
+        self.ended += int(np.count_nonzero(np.delete(outcome.error, [*rows.bad])))
         results: dict[str, NDArray[Any]] = {name: outcome.floats(name) for name in self.results}
         results["ERROR"] = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
         results["LINE"] = np.array(outcome.line)
