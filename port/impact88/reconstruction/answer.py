@@ -19,7 +19,7 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
-from .densities import quantile, sampling_error
+from .densities import sampling_error
 from .draws import Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
@@ -586,7 +586,7 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         if np.isfinite(column).all():
             columns[name] = column
             if np.ptp(column) > TIE * fit.problem.size(name):  # also where the slope is 0
-                middle = result.values.get(name, float(quantile(column, 0.5)))
+                middle = result.values.get(name, float(np.median(column)))
                 intervals[name] = low, high = _interval(column, middle)
                 if name in result.intervals or name in result.undetermined:
                     error = max(error, sampling_error(column, (low, high), draws.family))
@@ -602,9 +602,10 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
 def _interval(column: Array, value: float) -> tuple[float, float]:
     """Return the 90 % interval of draws: between equal tails, or beginning or ending at the value
     if it would lie outside."""
-    rank = float((column < value).mean())
-    level = float(np.clip(INTERVAL[0], rank - (INTERVAL[1] - INTERVAL[0]), rank))
-    low, high = quantile(column, (level, min(level + INTERVAL[1] - INTERVAL[0], 1.0))).tolist()
+    share = INTERVAL[1] - INTERVAL[0]
+    rank = (column < value).mean()
+    level = np.clip(INTERVAL[0], rank - share, rank)
+    low, high = np.quantile(column, (level, min(level + share, 1.0))).tolist()
     return min(low, value), max(high, value)
 
 

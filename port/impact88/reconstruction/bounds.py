@@ -20,7 +20,7 @@ from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
 from ..status import Status
-from .densities import draw_correlated, quantile, sampling_error
+from .densities import draw_correlated, sampling_error
 from .extremes import box_seeds, extremes
 from .impacts import COURSES, FORCES, SPEEDS, Array
 from .known import as_amounts, check_moment
@@ -209,11 +209,11 @@ def bounds(
     nominal = table(box.nominal)[0].tolist()
     results, error = {}, 0.0
     for k, name in enumerate(names):
-        lower, upper = ends[:, k].tolist()
-        levels = dict(zip(QUANTILES, quantile(draws[:, k], QUANTILES).tolist(), strict=True))
-        results[name] = Bound(nominal[k], lower, upper, levels, drivers[k])
         column = draws[np.isfinite(draws[:, k]), k]
-        error = max(error, sampling_error(column, results[name].interval))
+        levels = dict(zip(QUANTILES, np.quantile(column, QUANTILES).tolist(), strict=True))
+        lower, upper = ends[:, k].tolist()
+        results[name] = bound = Bound(nominal[k], lower, upper, levels, drivers[k])
+        error = max(error, sampling_error(column, bound.interval, np.arange(len(column))))
     columns = dict(zip(names, draws.T, strict=True))
     return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns, error)
 

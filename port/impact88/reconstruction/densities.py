@@ -46,9 +46,7 @@ def draw(amount: Amount, count: int, rng: np.random.Generator) -> Array:
 
 def from_normal(amount: Amount, variates: Array) -> Array:
     """Return the values at the quantiles of standard normal variates (interpolated in a table)."""
-    if amount.kind == "exact":
-        return np.full(np.shape(variates), amount.value)
-    if amount.kind == "normal" and math.isinf(amount.low) and math.isinf(amount.high):
+    if -amount.low == amount.high == math.inf:
         return amount.value + amount.sd * variates
     return np.clip(np.interp(variates, *_quantile_table(amount)), amount.low, amount.high)
 
@@ -64,30 +62,21 @@ def _quantile_table(amount: Amount) -> tuple[Array, Array]:
     return variates, np.interp(shares, [0.0, *(sums / sums[-1])], values)
 
 
-def quantile(column: Array, levels: float | tuple[float, ...] | Array) -> Array:
-    """Return quantiles of the values that are numbers, by linear interpolation."""
-    ordered = np.sort(column[np.isfinite(column)])
-    return np.asarray(np.interp(levels, np.linspace(0.0, 1.0, len(ordered)), ordered))
-
-
-def sampling_error(
-    column: Array, ends: tuple[float, float], family: NDArray[np.int64] | None = None
-) -> float:
+def sampling_error(column: Array, ends: tuple[float, float], family: NDArray[np.int64]) -> float:
     """Return the larger Monte Carlo standard error of the ends of an interval of draws, relative to
     its width.
 
     It follows from the scatter of the families of draws (Lee and Whiteley 2018); of draws that are
     independent, each a family, it is the binomial one."""
-    is_below = column[:, None] < np.asarray(ends)
-    shares = is_below.mean(0)
-    off = is_below - shares
-    if family is not None:
-        off = np.stack([np.bincount(family, part) for part in off.T], 1)
-    errors = np.sqrt((off**2).sum(0)) / len(column)
-    low, high = quantile(column, np.clip(np.stack([shares - errors, shares + errors]), 0.0, 1.0))
     width = ends[1] - ends[0]
-    is_constant = width <= ROUNDING * max(map(abs, ends))
-    return 0.0 if is_constant else float((high - low).max() / 2 / width)
+    if width <= ROUNDING * max(map(abs, ends)):
+        return 0.0
+    is_below = column < np.array(ends)[:, None]
+    shares = is_below.mean(1)
+    off = [np.bincount(family, part - share) for part, share in zip(is_below, shares, strict=True)]
+    errors = np.sqrt(np.square(off).sum(1)) / len(column)
+    low, high = np.quantile(column, np.clip([shares - errors, shares + errors], 0.0, 1.0))
+    return float((high - low).max() / 2 / width)
 
 
 def draw_correlated(
@@ -106,17 +95,17 @@ def draw_correlated(
     names = list(amounts)
     matrix = np.eye(len(names))
     for (first, second), value in correlations.items():
-        if first == second or not {first, second} <= {*names} or not -1.0 <= value <= 1.0:
+        if len({first, second} & {*names}) < 2 or not -1.0 <= value <= 1.0:
             raise UserError(
                 f"correlation of {first} and {second} is {value}; expected two of the values known "
                 f"within limits ({' '.join(names)}) and a number from -1 to 1"
             )
         row, column = names.index(first), names.index(second)
         matrix[row, column] = matrix[column, row] = value
-    sizes, vectors = np.linalg.eigh(matrix)
-    if sizes.min(initial=0.0) < -1e-9:
-        raise UserError("these correlations contradict one another")
-    root = vectors * np.sqrt(np.clip(sizes, 0.0, None))
-    normal = rng.standard_normal((count, len(amounts))) @ root.T
+    middle = np.zeros(len(names))
+    try:
+        normal = rng.multivariate_normal(middle, matrix, count, "raise", method="eigh")
+    except ValueError:
+        raise UserError("these correlations contradict one another") from None
     columns = [from_normal(item, z) for item, z in zip(amounts.values(), normal.T, strict=True)]
     return np.stack(columns, 1)
