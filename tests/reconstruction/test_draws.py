@@ -14,7 +14,7 @@ from impact88.reconstruction.densities import (
     log_density,
     sampling_error,
 )
-from impact88.reconstruction.draws import Target, sample
+from impact88.reconstruction.draws import log_densities, sample
 from impact88.reconstruction.problem import WIDEST, Problem
 from impact88.reconstruction.words import remarks
 
@@ -48,7 +48,7 @@ def _rejection(entries, draws, count, rng):
     columns = {n: np.full(count, a.value) for n, a in entries.items() if not a.varies}
     columns["VX"] = rng.uniform(entries["VX"].low, entries["VX"].high, count)
     if "HA" in entries:  # flat over the speed, since the course is known
-        limit = WIDEST * draws.target.problem.speed  # of what is not known
+        limit = WIDEST * draws.problem.speed  # of what is not known
         speed = rng.uniform(0, min(1.3 * draws["SA"].max(), limit), count)
         course = np.radians(rng.uniform(entries["HA"].low, entries["HA"].high, count))
         columns |= {"UX": speed * np.cos(course), "UY": speed * np.sin(course)}
@@ -90,11 +90,11 @@ def test_draws_are_those_of_emcee(entries):
     emcee = pytest.importorskip("emcee")
     amounts = {name: read(name, str(value)) for name, value in entries.items()}
     problem = Problem(amounts)
-    draws, target = sample(problem), Target(problem)
-    d = len(target.names)
+    draws = sample(problem)
+    d = len(problem.names)
 
     def log_density(points):
-        state = target(points)
+        state = log_densities(problem, points)
         return np.where(state.holds, state.prior + state.likelihood, -np.inf)
 
     walkers = max(4 * d, 40)
@@ -106,7 +106,7 @@ def test_draws_are_those_of_emcee(entries):
     for k in range(d):
         reference = np.quantile(chain[:, k], LEVELS)
         off = np.abs(np.quantile(draws.points[:, k], LEVELS) - reference) / chain[:, k].std()
-        assert off.max() < 0.15, (target.names[k], off)
+        assert off.max() < 0.15, (problem.names[k], off)
 
 
 @pytest.mark.parametrize("seed", [5, 7])  # from a uniform E and EM: no draws, no large losses

@@ -21,7 +21,7 @@ from ..mechanics.solve import evaluate
 from ..names import SCENE
 from .densities import sampling_error
 from .draws import Sample, push_forward, sample
-from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
+from .fit import EXACT_TOL, RESULT_STEP, STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
@@ -283,7 +283,7 @@ def reconstruct(
             tests, evidence = _tests(choice.best), _evidence(choice.best)
             results[0] = replace(results[0], tests=tests, evidence=evidence)
         else:  # they agree with each other, but not with physics
-            results[0] = replace(results[0], broken=_broken(choice.best, choice.best.violations()))
+            results[0] = replace(results[0], broken=_broken(choice.best, choice.best.violations))
     if samples and not results[0].is_adverse:
         fits = [fit for fit, _ in choice.fits]
         results = _with_draws(results, fits, samples, seed)
@@ -327,11 +327,11 @@ def _choose(problems: Sequence[Problem], seed: int) -> _Choice:
         ends += number
     exact = sum(fit.misfit < EXACT_TOL for fit in fits)
     agreeing = [fit for fit in fits if fit.misfit <= EXACT_TOL and _opposes_sliding(fit)]
-    agreeing = [fit for fit in agreeing if not fit.violations().keys() & {*COURSES}] or agreeing
+    agreeing = [fit for fit in agreeing if {*COURSES}.isdisjoint(fit.violations)] or agreeing
     search = (ends, len(agreeing), expected_unseen(exact, ends))
     best = min(agreeing, key=lambda fit: fit.squares, default=None)
     consistent = [fit for fit in agreeing if fit.probability >= CONTRADICTION]
-    possible = _in_order([fit for fit in consistent if not fit.violations()])
+    possible = _in_order([fit for fit in consistent if not fit.violations])
     if possible:
         return _Choice([(fit, "agrees") for fit in possible], len(possible), search, best)
     impossible = [(fit, "impossible") for fit in _in_order(consistent)]
@@ -368,7 +368,7 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
     numbers.append(abs(fit.value("MUP")))
     misfit = float(f"{max(fit.squares, TIE):.6e}")
     ties = [float(f"{x:.5e}") if abs(x) > TIE else 0.0 for x in numbers]
-    return (misfit, bool(fit.violations(friction=True)), *ties)
+    return (misfit, bool(fit.nearest_limits(-STEP)), *ties)
 
 
 def _nearest(
@@ -395,7 +395,7 @@ def _best_within_limits(
     for problem in problems:
         search = Search(problem.soften(SOFTENED) if softens else problem, limited=True)
         starts = [
-            np.array([fit.value(name) for name in search.names])
+            np.array([fit.value(name) for name in search.problem.names])
             for fit in fits
             if fit.problem is problem
         ]
@@ -423,7 +423,7 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
         reach = NormalDist().inv_cdf(INTERVAL[1])
         for name, slope in slopes.items():
             sd = float(np.sqrt(np.square(slope).sum()))
-            if sd > TIE * problem.size(name):
+            if sd > RESULT_STEP * problem.size(name):
                 intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
     vehicles = {name: fit.value(name) for name in VEHICLES}
@@ -480,9 +480,9 @@ def _without_noise(name: str, value: float, size: float) -> float:
 def _conditions(fit: Fit, verdict: str) -> dict[str, float]:
     """Return the conditions that an impossible impact violates, or at which a limited one lies."""
     if verdict == "impossible":
-        return _broken(fit, fit.violations())
+        return _broken(fit, fit.violations)
     if verdict == "at a limit":
-        return _broken(fit, [n for n, margin in fit.margins().items() if margin < RESULT_STEP])
+        return _broken(fit, fit.nearest_limits(RESULT_STEP))
     return {}
 
 
@@ -579,13 +579,14 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
                 return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
     columns, intervals, error = {}, dict(result.intervals), 0.0
-    for name in result_names(draws.target.problem):
+    for name in result_names(fit.problem):
         if name not in result.values and name not in result.undetermined:
             continue
         column = unwrap_angles(name, draws[name], result.values.get(name))
         if np.isfinite(column).all():
             columns[name] = column
-            if np.ptp(column) > TIE * fit.problem.size(name):  # also where the slope is 0
+            is_exact = name in fit.problem.known and not fit.problem.known[name].varies
+            if not is_exact and np.ptp(column) > RESULT_STEP * fit.problem.size(name):
                 middle = result.values.get(name, float(np.median(column)))
                 intervals[name] = low, high = _interval(column, middle)
                 if name in result.intervals or name in result.undetermined:

@@ -191,10 +191,10 @@ class Problem:
         """Set the dimensions and spins that point masses do not have, and their contact plane."""
         if "GA" not in known:
             self._take_plane_across(known)
-        for name in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY", "WAF", "WBF", "EM"):
+        for name in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY", "WAF", "WBF"):
             known.pop(name, None)
         known |= dict.fromkeys(("IA", "IB"), Amount.exactly(1.0))
-        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB"), Amount.exactly(0.0))
+        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "EM"), Amount.exactly(0.0))
         for vehicle in "AB":
             if "T" + vehicle not in known:
                 known["T" + vehicle] = Amount.exactly(np.nan)
@@ -204,13 +204,12 @@ class Problem:
         """Turn GA by 180 degrees where it puts each vehicle on the other's side."""
         names = (*VEHICLES, *OWN_AXES["A"], *OWN_AXES["B"])
         values = {name: known[name].value for name in names if name in known}
-        if np.isnan([*values.values()]).any() or known["GA"].varies:
-            return
         arms, _ = evaluate(with_arms(values), ("at", "bt"))
-        a, b = float(arms["at"]), float(arms["bt"])
-        if min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0:
+        a, b = (float(arm) for arm in arms.values())
+        is_turned = min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0
+        if is_turned and not known["GA"].varies:
             angle = known["GA"].value
-            opposite = angle - 180.0 if angle > 0 else angle + 180.0
+            opposite = math.remainder(angle + 180.0, 360.0)
             known["GA"] = Amount.exactly(opposite)
             self.remarks.append(
                 f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is "
@@ -278,7 +277,7 @@ class Problem:
         """Set the reduced mass, the radius of gyration and the largest velocity that is likely."""
         known = self.known
         masses = [known[name].value for name in ("MA", "MB")]
-        if min(masses) <= 0 or not np.isfinite(min(masses)):
+        if not 0 < min(masses) < math.inf:
             raise UserError("expected MA and MB above 0, and not both inf")
         self.mass = 1.0 / sum(1.0 / mass for mass in masses)
         ratios = [known["I" + v].value / known["M" + v].value for v in "AB"]
@@ -351,7 +350,7 @@ class Problem:
         for coefficient, impulse in zip(COEFFICIENTS, IMPULSES, strict=True):
             if coefficient in self.known:
                 names.append(coefficient)
-            elif not (self.point and coefficient == "EM"):
+            else:
                 names.append(impulse)  # over impulses, what is known is linear
                 self._note_range(coefficient, impulse)
         names += VEHICLES
@@ -362,7 +361,10 @@ class Problem:
                 self.coordinates.append(Known(name, amount, self.size(name)))
             else:
                 self.fixed[name] = amount.value
-        self.ranges = [n for n in RANGES if n not in self.fixed and not (self.point and n == "EM")]
+        self.names = [item.name for item in self.coordinates]
+        unknown_angles = {*ANGLES} - self.known.keys()
+        self.circular = [k for k, name in enumerate(self.names) if name in unknown_angles]
+        self.ranges = [name for name in RANGES if name not in self.fixed]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
         return set(names)
@@ -391,10 +393,13 @@ class Problem:
 
     # -- impacts
 
-    def impacts(self, names: list[str], points: Array) -> Impacts:
-        """Return impacts of points (rows) over coordinates ``names``; coefficients may be in place
-        of impulses."""
-        values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
+    def impacts(self, points: Array) -> Impacts:
+        """Return impacts of points (rows) over the coordinates."""
+        return self.complete(dict(zip(self.names, points.T, strict=True)))
+
+    def complete(self, columns: Mapping[str, Array]) -> Impacts:
+        """Return impacts of coordinates; coefficients may be in place of impulses."""
+        values: dict[str, Any] = {**self.fixed, **columns}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
             impacts = Impacts(with_arms({"M": 4.0 if self.point else 6.0, **values}))
@@ -402,10 +407,10 @@ class Problem:
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 is_at_rest = impacts["S" + vehicle] < TOUCH * self.speed
                 course = np.where(is_at_rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
-                impacts.values["T" + vehicle] = course + FACING[vehicle]
+                impacts["T" + vehicle] = course + FACING[vehicle]
             impacts.compute(self.needed)
             if self.share:
-                impacts.values["MU"] = impacts["MUP"] / impacts["MUC"]
+                impacts["MU"] = impacts["MUP"] / impacts["MUC"]
         return impacts
 
     def _make_cartesian(self, values: dict[str, Any]) -> None:
@@ -451,7 +456,7 @@ class Problem:
     # -- conditions
 
     @np.errstate(all="ignore")
-    def margins(self, impacts: Impacts, friction: bool = True) -> list[tuple[str, Any]]:
+    def margins(self, impacts: Impacts) -> list[tuple[str, Any]]:
         """Return how far impacts lie within what physics allows, by condition, in typical sizes.
 
         The vehicles travel along their courses, approach, push and gain no energy; e, e_m and
@@ -464,7 +469,7 @@ class Problem:
                 rows.append((course, impacts[speed] * along / self.speed + TOUCH))
         if self.without_arms:
             return rows
-        inside = margins(impacts.values, self.scale)
+        inside = margins(impacts, self.scale)
         rows.append(("energy", inside["energy"][0] + ENERGY_TOLERANCE))
         if self.without_plane:
             return rows
@@ -472,7 +477,7 @@ class Problem:
         side = np.where(inside["approach"][0] < 0, -1.0, 1.0) if self.point else 1.0
         rows += [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
         rows += [(name, row) for name in self.ranges for row in inside[name]]
-        if "MUP" not in self.known and friction:
+        if "MUP" not in self.known:
             rows += [("friction", side * row) for row in inside["friction"]]
         if self.sign:
             rows.append(("sign of MU", -self.sign * impacts["gt"] / self.speed))

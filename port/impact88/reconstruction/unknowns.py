@@ -163,7 +163,7 @@ def _columns(bodies: Mapping[str, Array], sizes: Array) -> dict[str, Array]:
     state has its size and the others are 0: component, element."""
     states = np.eye(len(STATE))[..., None] * sizes[:, None]
     impacts = Impacts({**bodies, **dict(zip(STATE, states, strict=True))})
-    state = {name: impacts.values[name] for name in (*MOTION, *IMPULSES)}
+    state = {name: impacts[name] for name in (*MOTION, *IMPULSES)}
     relative, _ = evaluate({**bodies, "M": BODIES, "MU": 0.0, **state}, CONTACT)
     return state | relative
 
