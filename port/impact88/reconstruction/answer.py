@@ -561,23 +561,23 @@ def _with_draws(
         if fit.open_directions.size or fit.redundancy:
             if fit.problem not in draws:
                 draws[fit.problem] = sample(fit.problem, samples, seed)
-            result = _with_sample(result, fit, draws[fit.problem])
+            result = _with_sample(result, fit, draws[fit.problem], seed)
         elif fit.sensitivity.any():
-            result = _with_sample(result, fit, push_forward(fit, samples, seed))
+            result = _with_sample(result, fit, push_forward(fit, samples, seed), seed)
         completed.append(result)
     return sorted(completed, key=lambda result: result.is_adverse)
 
 
-def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reconstruction:
+def _with_sample(
+    result: Reconstruction, fit: Fit, draws: Sample | None, seed: int
+) -> Reconstruction:
     """Return a result with the intervals of draws; a contradiction if there are none
-    and the impact has values beyond their limits."""
+    and no impact has all values within their limits."""
     if draws is None:
-        for item in fit.search.measured:
-            low, high = item.amount.limits()
-            adjusted = result.tests[item.name].adjusted
-            if abs(np.clip(adjusted, low, high) - adjusted) > RESULT_STEP * item.sd:
-                return replace(result, verdict="contradictory", intervals={}, drivers={})
+        if not Search(fit.problem, limited=True, within=True).nearest([fit.point], seed):
+            return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
+    exact = {name for name, amount in fit.problem.known.items() if not amount.varies}
     columns, intervals, error = {}, dict(result.intervals), 0.0
     for name in result_names(fit.problem):
         if name not in result.values and name not in result.undetermined:
@@ -585,10 +585,11 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         column = unwrap_angles(name, draws[name], result.values.get(name))
         if np.isfinite(column).all():
             columns[name] = column
-            is_exact = name in fit.problem.known and not fit.problem.known[name].varies
-            if not is_exact and np.ptp(column) > RESULT_STEP * fit.problem.size(name):
+            if name not in exact and np.ptp(column) > RESULT_STEP * fit.problem.size(name):
                 middle = result.values.get(name, float(np.median(column)))
-                intervals[name] = low, high = _interval(column, middle)
+                low, high = _interval(column, middle)
+                is_reversed = name in ANGLES and high - low > 180.0 - RESULT_STEP
+                intervals[name] = (-180.0, 180.0) if is_reversed else (low, high)
                 if name in result.intervals or name in result.undetermined:
                     error = max(error, sampling_error(column, (low, high), draws.family))
     return replace(

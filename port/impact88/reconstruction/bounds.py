@@ -17,7 +17,7 @@ import numpy as np
 from ..cases.amounts import Amount
 from ..cases.motion import line_of_motion
 from ..errors import UserError
-from ..mechanics.solve import BODIES, POINT, evaluate
+from ..mechanics.solve import POINT, evaluate
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
 from ..status import Status
 from .densities import draw_correlated, sampling_error
@@ -97,7 +97,6 @@ class _Box:
     """The inputs: exact ones, and the limits of those that vary."""
 
     def __init__(self, amounts: Mapping[str, Amount]) -> None:
-        amounts = {"M": Amount.exactly(BODIES), **amounts}
         if amounts["M"].value == POINT:
             amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
             line = None if "GA" in amounts else line_of_motion(amounts)

@@ -157,10 +157,12 @@ class Search:
         The problem.
     limited : bool, default False
         Count what physics forbids as a misfit.
+    within : bool, default False
+        Count values beyond their limits as a misfit, too.
     """
 
-    def __init__(self, problem: Problem, limited: bool = False) -> None:
-        self.problem, self.limited = problem, limited
+    def __init__(self, problem: Problem, limited: bool = False, within: bool = False) -> None:
+        self.problem, self.limited, self.within = problem, limited, within
         self.priors = problem.coordinates
         self.sizes = np.array([item.size for item in self.priors])
         self.places = [k for k, name in enumerate(problem.names) if name in problem.known]
@@ -180,6 +182,11 @@ class Search:
         hard = [self.problem.misfit(impacts, item) / item.size for item in self.hard]
         if self.limited:
             hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
+        if self.within:
+            for off, item in zip(soft, self.measured, strict=True):
+                low, high = item.amount.limits()
+                value = item.amount.value + item.sd * off
+                hard.append((value - np.clip(value, low, high)) / item.sd)
         return _columns(soft, count), _columns(hard, count)
 
     def slopes(self, points: Array) -> list[Array]:

@@ -50,7 +50,6 @@ LOST = {"E": 0.0, "EM": 0.0, "MUP": PIVOT}  # coefficients that leave nothing of
 FINAL = ("SAF", "HAF", "VAX", "VAY")
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
 CRUSH = ("ELA", "EBSA", "ELB", "EBSB")
-MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
 TOUCH = 1e-9  # least speed, closing speed and impulse that count, over typical ones
 
 
@@ -121,7 +120,7 @@ class Problem:
         self.powers = self._powers_of_speeds(names)
         along = [name for course in self.lines for name in (course, COURSES[course])]
         observed = [item.name for item in self.observed]
-        self.needed = tuple(dict.fromkeys([*MARGIN_INPUTS, *observed, *along, *self.powers]))
+        self.needed = tuple(dict.fromkeys([*observed, *along, *self.powers]))
 
     # -- what is known, completed
 
