@@ -35,7 +35,7 @@ CHECKED = 0.02  # least part of a variance that counts
 NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
 MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
-NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
+NARROWED = 0.1  # an interval that ends as near to an end of an assumed range of 1 reaches it
 
 NO_APPROACH = "the contact points do not approach before this impact (gn = 0): nothing collides"
 OUTSIDE = (
@@ -295,12 +295,13 @@ def _with_forces(result: Reconstruction, duration: float) -> Reconstruction:
     courses of the force (chapter, Section III)."""
     if "P" not in result.values:
         return result
+    size = result.values["P"]
+    low, high = result.intervals.get("P", (size, size))
     values, intervals = {**result.values, "TF": duration}, {**result.intervals}
-    for name, times in (("FA", 1.0), ("FM2", 2.0), ("FM3", 3.0)):
-        values[name] = times * values["P"] / duration
-        if "P" in intervals:
-            low, high = intervals["P"]
-            intervals[name] = times * low / duration, times * high / duration
+    for name, factor in (("FA", 1 / duration), ("FM2", 2 / duration), ("FM3", 3 / duration)):
+        values[name] = factor * size
+        if low < high:
+            intervals[name] = factor * low, factor * high
     return replace(result, values=values, intervals=intervals)
 
 
@@ -618,9 +619,8 @@ def _with_ends(
     range, not from what is known."""
     words = dict(assumed)
     for name in {*RANGES} & {*assumed} & {*intervals}:
-        low, high = RANGES[name]
-        pairs = zip((low, high), intervals[name], strict=True)
-        ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED * (high - low)]
+        pairs = zip(RANGES[name], intervals[name], strict=True)
+        ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"
     return words

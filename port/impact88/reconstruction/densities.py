@@ -8,6 +8,7 @@ from functools import lru_cache
 from statistics import NormalDist
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
 from ..cases.amounts import Amount
@@ -37,7 +38,7 @@ def log_density(amount: Amount, values: Array) -> Array:
         return np.log(np.clip(1.0 - np.abs(off) / np.maximum(side, 1e-300), 0.0, 1.0))
 
 
-def draw(amount: Amount, count: int, rng: np.random.Generator) -> Array:
+def draw(amount: Amount, count: int, rng: Generator) -> Array:
     """Return independent random values."""
     if amount.kind == "uniform":
         return rng.uniform(amount.low, amount.high, count)
@@ -82,7 +83,7 @@ def sampling_error(column: Array, ends: tuple[float, float], family: NDArray[np.
 def draw_correlated(
     amounts: Mapping[str, Amount],
     count: int,
-    rng: np.random.Generator,
+    rng: Generator,
     correlations: Mapping[tuple[str, str], float],
 ) -> Array:
     """Return random values (rows), correlated through a Gaussian copula.

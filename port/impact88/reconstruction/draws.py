@@ -14,8 +14,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
+from ..cases.amounts import Amount
 from ..mechanics.laws import MAX_FRICTION
 from .densities import draw, log_density
 from .fit import Fit
@@ -74,7 +76,7 @@ class Sample:
         return np.broadcast_to(self.impacts[name], len(self.points))
 
 
-def draw_prior(problem: Problem, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
+def draw_prior(problem: Problem, count: int, rng: Generator) -> tuple[Array, Array]:
     """Return points, and the log of their weights under the prior: coefficients that are not
     given are drawn, and give the impulses."""
     columns: dict[str, Array] = {}
@@ -146,13 +148,11 @@ def observation(item: Known, off: Array) -> tuple[Array, NDArray[np.bool_]]:
     amount = item.amount
     if not amount.varies:
         width = EXACT_WIDTH * item.size
-        return -0.5 * (off / width) ** 2, np.abs(off) <= 4 * width
+        amount = Amount(amount.value, -np.inf, np.inf, "normal", width)
     low, high = (limit - amount.value for limit in amount.limits())
     beyond = np.maximum(np.maximum(off - high, low - off), 0.0)
-    density = -0.5 * (beyond / (SOFT_LIMIT * (high - low) / 2)) ** 2
-    if amount.kind != "uniform":
-        density = density + log_density(amount, np.clip(off, low, high) + amount.value)
-    return density, beyond <= 0
+    inside = log_density(amount, np.clip(off, low, high) + amount.value)
+    return inside - 0.5 * (beyond / (SOFT_LIMIT * (high - low) / 2)) ** 2, beyond <= 0
 
 
 def sample(
@@ -212,7 +212,7 @@ def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
     return draws if len(points) >= MIN_FAMILIES else None
 
 
-def _first(problem: Problem, rng: np.random.Generator) -> tuple[State, Array] | None:
+def _first(problem: Problem, rng: Generator) -> tuple[State, Array] | None:
     """Return particles of the prior that physics allows, and the log of their weights."""
     states: list[State] = []
     log_weights = np.empty(0)
@@ -253,7 +253,7 @@ def _effective_number(log_weights: Array) -> float:
     return float(weights.sum() ** 2 / (weights**2).sum())
 
 
-def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+def _resample(log_weights: Array, count: int, rng: Generator) -> NDArray[np.int64]:
     """Return systematic choices in proportion to weights."""
     total = np.cumsum(np.exp(log_weights - log_weights.max()))
     places = (rng.random() + np.arange(count)) / count * total[-1]
@@ -266,7 +266,7 @@ def _move(
     power: float,
     scale: float,
     distance: float,
-    rng: np.random.Generator,
+    rng: Generator,
 ) -> tuple[State, float]:
     """Move particles until each was accepted ``distance`` times on average; return them and the
     adapted scale of moves."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.random import Generator
 
 from .impacts import Array
 
@@ -24,7 +25,7 @@ def extremes(
     function: Callable[[Array], Array],
     seeds: Array,
     box: tuple[Array, Array],
-    rng: np.random.Generator,
+    rng: Generator,
 ) -> Array:
     """Return the least and the greatest values of several outputs.
 
@@ -67,11 +68,10 @@ def extremes(
         points[is_better], heights[is_better] = trial[is_better], new[is_better]
         order = np.argsort(-heights, axis=1, kind="stable")
         points, heights = points[rows, order], np.take_along_axis(heights, order, 1)
-    values = heights[:, 0].reshape(2, m // 2)
-    return np.stack([-values[0], values[1]])
+    return heights[:, 0].reshape(2, m // 2) * [[-1.0], [1.0]]
 
 
-def box_seeds(low: Array, high: Array, rng: np.random.Generator) -> Array:
+def box_seeds(low: Array, high: Array, rng: Generator) -> Array:
     """Return random corners, points on faces and points inside of a box."""
     unit = rng.random((SEEDS, len(low)))
     share = rng.random((SEEDS, 1))  # of coordinates at an end: none inside, all at corners

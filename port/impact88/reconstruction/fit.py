@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
 from .densities import draw
@@ -202,7 +203,7 @@ class Search:
         tables = self.residuals(np.repeat(points, number, 0) + np.tile(steps, (count, 1)))
         return [table.reshape(count, number, table.shape[1]).swapaxes(1, 2) for table in tables]
 
-    def starts(self, count: int, rng: np.random.Generator) -> Array:
+    def starts(self, count: int, rng: Generator) -> Array:
         """Return random points over the whole range of impacts."""
         columns = []
         for item in self.priors:

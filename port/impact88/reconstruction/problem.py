@@ -40,6 +40,7 @@ from .impacts import (
 
 MOTION = (VELOCITY, SPIN, ENERGY, IMPULSE, TURNING, PERCENT)
 ARMS = ("IA", "IB", "DA", "DB", "PA", "PB")
+WITH_ARMS = ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS")  # what depends on the arms
 ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
@@ -109,7 +110,7 @@ class Problem:
         for vehicle in "AB":
             self.frames[vehicle] = self._frame(vehicle)
         self.coordinates: list[Known] = []
-        self.fixed: dict[str, float] = {}
+        self.fixed = {"M": POINT if self.point else BODIES}
         names = self._choose_coordinates()
         self.observed = [
             Known(name, amount, self.size(name))
@@ -174,12 +175,12 @@ class Problem:
         if not absent:
             self._turn_plane(known)
             return
-        turning = [n for n in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS") if n in known]
+        turning = [name for name in WITH_ARMS if name in known]
         if turning and {*absent} & {*ARMS, "GA"}:
             raise UserError(f"{', '.join(turning)} cannot be used: {missing(absent)}")
         if arms := [name for name in absent if name in ARMS]:
             self.point = self.without_arms = True
-            names = ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS", "PM", "KI", "KF", "EL")
+            names = (*WITH_ARMS, "PM", "KI", "KF", "EL")
             self.excluded |= dict.fromkeys(names, ", ".join(arms))
         elif "GA" in absent:
             raise UserError(missing(["GA"]))
@@ -401,7 +402,7 @@ class Problem:
         values: dict[str, Any] = {**self.fixed, **columns}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
-            impacts = Impacts(with_arms({"M": 4.0 if self.point else 6.0, **values}))
+            impacts = Impacts(with_arms(values))
             impacts.compute([n for v in self.facing for n in ("S" + v, "H" + v, f"H{v}F")])
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 is_at_rest = impacts["S" + vehicle] < TOUCH * self.speed
