@@ -96,11 +96,6 @@ class Test:
     sd: float
     residual: float
 
-    @property
-    def move(self) -> float:
-        """Distance to what the others give it, in its standard deviations."""
-        return abs(self.by_others - self.measured) / self.sd
-
 
 @dataclass(frozen=True)
 class Evidence:
@@ -365,8 +360,6 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
     that no choice of axes, units or names changes the order of."""
     numbers = [fit.value(name) for name in ("KI", "E", "EM", "DVA", "EL")]
     numbers = [x for x in numbers if math.isfinite(x)]
-    numbers += [fit.value("SA" + x) + fit.value("SB" + x) for x in ("", "F")]
-    numbers.append(abs(fit.value("MUP")))
     misfit = float(f"{max(fit.squares, TIE):.6e}")
     ties = [float(f"{x:.5e}") if abs(x) > TIE else 0.0 for x in numbers]
     return (misfit, bool(fit.nearest_limits(-STEP)), *ties)
@@ -520,8 +513,12 @@ def _at_odds(tests: Mapping[str, Test]) -> tuple[str, ...]:
     largest = max((test.residual**2 for test in tests.values()), default=0.0)
     if largest < 1.0:
         return ()
-    names = [n for n, test in tests.items() if test.residual**2 >= NAMED_RATIO * largest]
-    return tuple(sorted(names, key=lambda name: tests[name].move)[:MAX_NAMED])
+    moves = {
+        name: abs(test.by_others - test.measured) / test.sd
+        for name, test in tests.items()
+        if test.residual**2 >= NAMED_RATIO * largest
+    }
+    return tuple(sorted(moves, key=moves.__getitem__)[:MAX_NAMED])
 
 
 # -- what results depend on

@@ -96,19 +96,18 @@ class Bounds:
 class _Box:
     """The inputs: exact ones, and the limits of those that vary."""
 
-    def __init__(self, amounts: Mapping[str, Amount]) -> None:
+    def __init__(self, amounts: dict[str, Amount]) -> None:
         if amounts["M"].value == POINT:
-            amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
+            amounts = dict.fromkeys(("WA", "WB"), Amount.exactly(0.0)) | amounts
             line = None if "GA" in amounts else line_of_motion(amounts)
             if line is not None:  # nothing acts along the plane
                 amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
         elif "EM" in amounts:
             check_moment(*amounts["EM"].limits())
+        self.amounts = amounts
         self.varied = {name: amount for name, amount in amounts.items() if amount.varies}
         if not self.varied:
             raise UserError("no value is known within limits; expected one such as 0.7 .. 0.9")
-        self.exact = {name: a.value for name, a in amounts.items() if not a.varies}
-        self.share = "MU" in amounts and amounts["MU"].share
         self.low, self.high = np.array([amount.limits() for amount in self.varied.values()]).T
         self.nominal = np.array([[amount.value for amount in self.varied.values()]])
 
@@ -116,8 +115,9 @@ class _Box:
         self, points: Array, wanted: Sequence[str]
     ) -> tuple[dict[str, Array], dict[str, tuple[str, ...]]]:
         """Return results of inputs (rows), and the inputs that other results lack."""
-        columns = with_arms({**self.exact, **dict(zip(self.varied, points.T, strict=True))})
-        if self.share:
+        columns: dict[str, Any] = {name: amount.value for name, amount in self.amounts.items()}
+        columns = with_arms(columns | dict(zip(self.varied, points.T, strict=True)))
+        if "MU" in columns and self.amounts["MU"].share:
             values, lacking = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
             if lacking:
                 return {}, lacking
@@ -220,16 +220,13 @@ def bounds(
 def _drivers(box: _Box, table: Callable[[Array], Array]) -> list[dict[str, float]]:
     """Return for each output the inputs with their effect alone, largest first."""
     effects = []
-    for k in range(len(box.varied)):
+    for k, ends in enumerate(zip(box.low, box.high, strict=True)):
         sweep = np.repeat(box.nominal, SWEEP_POINTS, 0)
-        sweep[:, k] = np.linspace(box.low[k], box.high[k], SWEEP_POINTS)
+        sweep[:, k] = np.linspace(*ends, SWEEP_POINTS)
         results = table(sweep)
         effects.append(np.nanmax(results, 0) - np.nanmin(results, 0))
-    drivers = []
-    for ranges in np.transpose(effects).tolist():
-        pairs = zip(box.varied, ranges, strict=True)
-        drivers.append(dict(sorted(pairs, key=lambda pair: -pair[1])))
-    return drivers
+    rows = [zip(box.varied, effect, strict=True) for effect in np.transpose(effects).tolist()]
+    return [dict(sorted(row, key=lambda pair: -pair[1])) for row in rows]
 
 
 def _warnings(box: _Box, inputs: Array) -> dict[str, float]:

@@ -297,7 +297,7 @@ class Search:
             residual = self._all_residuals(points)
             off = residual - target
             misfit = np.abs(off).max(1)
-            if not len(free) or (misfit < STEP).all():
+            if (misfit < STEP).all():
                 break
             if k % 2 == 0:  # slopes serve for two steps
                 slope = self._forward_slopes(points, residual, 1.0, self.places)

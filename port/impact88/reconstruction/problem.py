@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -250,8 +250,7 @@ class Problem:
         self.share = "MU" in known and known["MU"].share
         self.sign = 0
         if "MU" in known and not self.share:
-            size = replace(known.pop("MU"), text="")
-            known["MUP"] = size.mapped(Fraction(-1)) if sign < 0 else size
+            known["MUP"] = known.pop("MU").mapped(Fraction(sign or 1))
             self.sign = sign
 
     def soften(self, tolerance: float) -> Problem:
