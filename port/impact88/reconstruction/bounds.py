@@ -24,14 +24,14 @@ from .densities import draw_correlated, sampling_error
 from .extremes import box_seeds, extremes
 from .impacts import COURSES, FORCES, SPEEDS, Array
 from .known import as_amounts, check_moment
-from .problem import OWN_AXES, unwrap_angles, with_arms
+from .problem import CONTACT_POINT, ZERO, unwrap_angles, with_arms
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
 SWEEP_POINTS = 21  # of each input alone: the top of a parabola is missed by 0.3 % at most
 MAX_DRAWS = 10_000_000  # 80 MB for each output
 BOUNDED = (*RESULTS, *SPEEDS, *COURSES, *FORCES, "DVAF", "DVAR", "DVBF", "DVBR", "EL", "DT")
-INPUTS = (*SCENE, *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
+INPUTS = (*SCENE, *CONTACT_POINT)
 
 
 @dataclass(frozen=True)
@@ -98,10 +98,10 @@ class _Box:
 
     def __init__(self, amounts: dict[str, Amount]) -> None:
         if amounts["M"].value == POINT:
-            amounts = dict.fromkeys(("WA", "WB"), Amount.exactly(0.0)) | amounts
+            amounts = {"WA": ZERO, "WB": ZERO} | amounts
             line = None if "GA" in amounts else line_of_motion(amounts)
             if line is not None:  # nothing acts along the plane
-                amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
+                amounts |= {"GA": Amount.exactly(line), "MU": ZERO}
         elif "EM" in amounts:
             check_moment(*amounts["EM"].limits())
         self.amounts = amounts

@@ -18,7 +18,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from .densities import draw
-from .impacts import AFTER, BEFORE, COURSES, Array, Impacts
+from .impacts import AFTER, BEFORE, Array, Impacts
 from .problem import ANGLES, Problem
 
 BATCH = 120  # starts at a time
@@ -207,12 +207,10 @@ class Search:
         """Return random points over the whole range of impacts."""
         columns = []
         for item in self.priors:
-            if item.name in self.problem.known:
+            if item.name in self.problem.known or item.name in ANGLES:
                 columns.append(draw(item.amount, count, rng) / item.size)
             elif item.name == "PN":
                 columns.append(rng.uniform(-2.0 * self.problem.point, 2.0, count))
-            elif item.name in ("GA", *COURSES):
-                columns.append(rng.uniform(-180.0, 180.0, count) / item.size)
             else:
                 columns.append(rng.uniform(-1.5, 1.5, count))
         return np.stack(columns, 1)

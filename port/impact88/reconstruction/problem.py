@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..cases.amounts import Amount
-from ..cases.motion import OWN_AXES as OWN_AXES
-from ..cases.motion import line_of_motion
+from ..cases.motion import OWN_AXES, line_of_motion
 from ..errors import UserError
 from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE, NO_MOMENT
 from ..mechanics.laws import Scale, margins
@@ -42,6 +41,8 @@ MOTION = (VELOCITY, SPIN, ENERGY, IMPULSE, TURNING, PERCENT)
 ARMS = ("IA", "IB", "DA", "DB", "PA", "PB")
 WITH_ARMS = ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS")  # what depends on the arms
 ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
+ZERO = Amount.exactly(0.0)
+CONTACT_POINT = (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 """Ranges of coefficients that are not given (listing, lines 40 and 50)."""
@@ -105,7 +106,6 @@ class Problem:
         self._set_friction(known, sign)
         self._set_scales()
         self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
-        self._turns_with_course = [v for v in self.facing if not self.point]
         self.frames: dict[str, tuple[str, str]] = {}
         for vehicle in "AB":
             self.frames[vehicle] = self._frame(vehicle)
@@ -154,7 +154,7 @@ class Problem:
         if np.isinf(known["MB"].value):
             known.setdefault("IB", known["MB"])
             for name in ("SB", "WB", "TB", "DB", "PB"):
-                known.setdefault(name, Amount.exactly(0.0))
+                known.setdefault(name, ZERO)
 
     def _set_at_rest(self, known: dict[str, Amount]) -> None:
         """Replace a speed of 0 by two velocities of 0."""
@@ -163,14 +163,14 @@ class Problem:
                 del known[speed]
                 known.pop(course, None)
                 for axis in (x, y):
-                    known.setdefault(axis, Amount.exactly(0.0))
+                    known.setdefault(axis, ZERO)
 
     def _complete_bodies(self, known: dict[str, Amount]) -> None:
         """Treat bodies of which only the momentum is used as points; refuse missing dimensions."""
         for vehicle, axes in OWN_AXES.items():
             if any(name in known for name in axes):
-                known.setdefault("D" + vehicle, Amount.exactly(0.0))
-                known.setdefault("P" + vehicle, Amount.exactly(0.0))
+                known.setdefault("D" + vehicle, ZERO)
+                known.setdefault("P" + vehicle, ZERO)
         absent = [name for name in VEHICLES if name not in known]
         if not absent:
             self._turn_plane(known)
@@ -191,10 +191,10 @@ class Problem:
         """Set the dimensions and spins that point masses do not have, and their contact plane."""
         if "GA" not in known:
             self._take_plane_across(known)
-        for name in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY", "WAF", "WBF"):
+        for name in (*CONTACT_POINT, "WAF", "WBF"):
             known.pop(name, None)
         known |= dict.fromkeys(("IA", "IB"), Amount.exactly(1.0))
-        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "EM"), Amount.exactly(0.0))
+        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "EM"), ZERO)
         for vehicle in "AB":
             if "T" + vehicle not in known:
                 known["T" + vehicle] = Amount.exactly(np.nan)
@@ -202,7 +202,7 @@ class Problem:
 
     def _turn_plane(self, known: dict[str, Amount]) -> None:
         """Turn GA by 180 degrees where it puts each vehicle on the other's side."""
-        names = (*VEHICLES, *OWN_AXES["A"], *OWN_AXES["B"])
+        names = (*VEHICLES, *CONTACT_POINT)
         values = {name: known[name].value for name in names if name in known}
         arms, _ = evaluate(with_arms(values), ("at", "bt"))
         a, b = (float(arm) for arm in arms.values())
@@ -222,9 +222,9 @@ class Problem:
         has_direction = bool({*FORCES, "DVAR", "DVBR"} & known.keys())
         is_locked = "MU" in known and known["MU"].value == PIVOT
         names: tuple[str, ...] = ("E", "MUP", "PN", "PT", "VC", "VS", "MUC")
-        if is_locked and not has_direction and _is_zero(known.get("E", Amount.exactly(0.0))):
-            known["GA"] = Amount.exactly(0.0)  # equal velocities after: the plane has no effect
-            known["E"] = Amount.exactly(0.0)
+        if is_locked and not has_direction and _is_zero(known.get("E", ZERO)):
+            known["GA"] = ZERO  # equal velocities after: the plane has no effect
+            known["E"] = ZERO
             self.without_plane = True
             names = names[1:]
         else:
@@ -239,7 +239,7 @@ class Problem:
                 names = ()
             elif "MU" in known or "MUP" in known:
                 raise UserError(f"MU cannot be used: {missing(['GA'])}")
-            known["MUP"] = Amount.exactly(0.0)
+            known["MUP"] = ZERO
         for name in names:
             self.excluded.setdefault(name, "GA")
 
@@ -293,9 +293,9 @@ class Problem:
                 ENERGY: float(np.sqrt(2.0 * value / moving)),
             }
             sizes.append(as_speed.get(quantity(name).unit, 0.0))
-        if not max(sizes):
-            raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
         self.speed = max(sizes)
+        if not self.speed:
+            raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
         self.scale = Scale(self.speed, self.mass, self.gyration)
 
     def size(self, name: str) -> float:
@@ -331,7 +331,9 @@ class Problem:
             (f"S{vehicle}F", f"H{vehicle}F"),
         ]
         is_late = vehicle == "B" and any(name in FINAL for name in self.frames["A"])
-        is_early = vehicle in self._turns_with_course or (is_late and not self._leaves("E", "MUP"))
+        is_early = (vehicle in self.facing and not self.point) or (
+            is_late and not self._leaves("E", "MUP")
+        )
         # a course is smooth where the vehicle stops only as a coordinate
         is_early = is_early or (course in self.known and self.known[course].varies)
         frames = before if is_early else after
@@ -353,7 +355,7 @@ class Problem:
                 names.append(impulse)  # over impulses, what is known is linear
                 self._note_range(coefficient, impulse)
         names += VEHICLES
-        names += [n for n in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY") if n in self.known]
+        names += [name for name in CONTACT_POINT if name in self.known]
         for name in names:
             amount = self.known.get(name) or uniform(*self._widest(name))
             if amount.varies:
@@ -418,7 +420,7 @@ class Problem:
             if frame[0] in SPEEDS:
                 x, y = SPEEDS[frame[0]]
                 values[x], values[y] = components(values.pop(frame[0]), values.pop(frame[1]))
-            if vehicle in self._turns_with_course:
+            if vehicle in self.facing and not self.point:
                 x, y, _, _ = VECTORS[vehicle]
                 _, course = _polar(values[x], values[y])
                 values["T" + vehicle] = course + FACING[vehicle]
@@ -486,16 +488,15 @@ class Problem:
 def with_arms(values: dict[str, Any]) -> dict[str, Any]:
     """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
     PB."""
+    shift_x, shift_y = (values.get(name, 0.0) for name in ("CX", "CY"))
     for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
         distance, angle, axes = "D" + vehicle, "P" + vehicle, OWN_AXES[vehicle]
         if any(name in values for name in axes):
-            forward, leftward = (values.get(name, 0.0) for name in axes)
-            values[distance], values[angle] = _polar(forward, leftward)
+            values[distance], values[angle] = _polar(*(values.get(name, 0.0) for name in axes))
         if "CX" in values or "CY" in values:
             heading = values["T" + vehicle]
             x, y = components(values[distance], heading + values[angle])
-            x, y = x + side * values.get("CX", 0.0), y + side * values.get("CY", 0.0)
-            values[distance], direction = _polar(x, y)
+            values[distance], direction = _polar(x + side * shift_x, y + side * shift_y)
             values[angle] = direction - heading
     return values
 
@@ -535,6 +536,6 @@ def unwrap_angles(name: str, column: Array, middle: float | None) -> Array:
 
 def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:
     """Return the signs of P_t that MU leaves open (line 400 decides by the sliding)."""
-    friction = known.get("MU", Amount.exactly(0.0))
+    friction = known.get("MU", ZERO)
     is_exact = not friction.varies and friction.value in (0.0, PIVOT)
     return (0,) if friction.share or is_exact else (1, -1)
