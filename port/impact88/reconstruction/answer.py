@@ -17,7 +17,7 @@ import numpy as np
 
 from ..cases.amounts import Amount
 from ..errors import UserError
-from ..mechanics.solve import evaluate
+from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import SCENE
 from .densities import sampling_error
 from .draws import Sample, push_forward, sample
@@ -207,10 +207,10 @@ class Reconstruction:
             names = ", ".join(open_names).replace("MUP", "MU")
             raise UserError(f"the impact found leaves {names} open; expected a determined scene")
         scene = {name: values[name] for name in inputs}
-        friction, _ = evaluate({**scene, "M": 6.0}, ("MU",))
+        friction, _ = evaluate({**scene, "M": BODIES}, ("MU",))
         scene["MU"] = float(friction["MU"])
         del scene["MUP"]
-        return {**scene, "M": 4.0 if self.point else 6.0}
+        return {**scene, "M": POINT if self.point else BODIES}
 
 
 def reconstruct(
@@ -275,8 +275,8 @@ def reconstruct(
     ]
     if choice.best and results[0].verdict == "contradictory":
         if choice.best.probability < CONTRADICTION:
-            tests, evidence = _tests(choice.best), _evidence(choice.best)
-            results[0] = replace(results[0], tests=tests, evidence=evidence)
+            evidence = _evidence(choice.best)
+            results[0] = replace(results[0], tests=_tests(choice.best), evidence=evidence)
         else:  # they agree with each other, but not with physics
             results[0] = replace(results[0], broken=_broken(choice.best, choice.best.violations))
     if samples and not results[0].is_adverse:

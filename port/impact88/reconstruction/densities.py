@@ -21,11 +21,6 @@ ROUNDING = 1e-12  # width of an interval of which only rounding varies, relative
 TABLE_SIZE = 8193  # values of a table: quantiles to 1e-7 of the width
 
 
-def uniform(low: float, high: float) -> Amount:
-    """Return an amount between two values, none preferred."""
-    return Amount((low + high) / 2, low, high, "uniform")
-
-
 def log_density(amount: Amount, values: Array) -> Array:
     """Return the log density at values within the limits, up to a constant."""
     off = values - amount.value

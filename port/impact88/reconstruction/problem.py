@@ -23,7 +23,6 @@ from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE,
 from ..mechanics.laws import Scale, margins
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
-from .densities import uniform
 from .impacts import (
     COEFFICIENTS,
     COURSES,
@@ -219,10 +218,10 @@ class Problem:
     def _take_plane_across(self, known: dict[str, Amount]) -> None:
         """Choose the contact plane of point masses: across the motion where all of it is along one
         line, else across the impulse, whose direction is open (GA)."""
-        has_direction = bool({*FORCES, "DVAR", "DVBR"} & known.keys())
         is_locked = "MU" in known and known["MU"].value == PIVOT
+        is_locked &= known.keys().isdisjoint((*FORCES, "DVAR", "DVBR"))  # no direction given
         names: tuple[str, ...] = ("E", "MUP", "PN", "PT", "VC", "VS", "MUC")
-        if is_locked and not has_direction and _is_zero(known.get("E", ZERO)):
+        if is_locked and _is_zero(known.get("E", ZERO)):
             known["GA"] = ZERO  # equal velocities after: the plane has no effect
             known["E"] = ZERO
             self.without_plane = True
@@ -357,7 +356,7 @@ class Problem:
         names += VEHICLES
         names += [name for name in CONTACT_POINT if name in self.known]
         for name in names:
-            amount = self.known.get(name) or uniform(*self._widest(name))
+            amount = self.known.get(name) or self._widest(name)
             if amount.varies:
                 self.coordinates.append(Known(name, amount, self.size(name)))
             else:
@@ -370,12 +369,13 @@ class Problem:
             self.fixed["T" + vehicle] = 0.0
         return set(names)
 
-    def _widest(self, name: str) -> tuple[float, float]:
-        """Return the limits of a coordinate of which nothing is known."""
-        if name in ANGLES:
-            return -180.0, 180.0
-        reach = np.inf if name in IMPULSES else WIDEST * self.size(name)
-        return (0.0 if name in SPEEDS else -reach), reach
+    def _widest(self, name: str) -> Amount:
+        """Return the range of a coordinate of which nothing is known."""
+        reach = 180.0 if name in ANGLES else WIDEST * self.size(name)
+        if name in IMPULSES:
+            reach = math.inf
+        low = 0.0 if name in SPEEDS else -reach
+        return Amount((low + reach) / 2, low, reach, "uniform")
 
     def _leaves(self, *coefficients: str) -> bool:
         """Return False if nothing is left of a relative velocity: no inverse leads back from it
