@@ -219,7 +219,7 @@ def test_nearest_impact_within_physics_is_that_of_another_method(number):
         for k in range(4)
     ]
     best = min(end.fun for end in ends if within(end.x).min() > -1e-7)
-    answer = Search(problem, limited=True).nearest([search.run()[0][0].point])
+    answer = Search(problem, limited=True).nearest([search.run()[0][0]])
     assert answer.squares == pytest.approx(best, rel=2e-3)
 
 

@@ -105,10 +105,10 @@ class Evidence:
     squares: float
     redundancy: int
     probability: float
-    at_odds: tuple[str, ...] = ()
+    at_odds: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Reconstruction:
     """One impact that agrees with what is known, or the nearest one.
 
@@ -163,24 +163,24 @@ class Reconstruction:
     """
 
     values: Mapping[str, float]
-    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    assumed: Mapping[str, str] = field(default_factory=dict)
-    verdict: str = "agrees"
-    tests: Mapping[str, Test] = field(default_factory=dict)
+    intervals: Mapping[str, tuple[float, float]]
+    assumed: Mapping[str, str]
+    verdict: str
+    tests: Mapping[str, Test]
     solutions: int = 1
     draws: Mapping[str, Array] = field(default_factory=dict)
     sampling_error: float = 0.0
-    evidence: Evidence = Evidence(0.0, 0, 1.0)
+    evidence: Evidence
     laws: tuple[MissedLaw, ...] = ()
-    broken: Mapping[str, float] = field(default_factory=dict)
-    drivers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    undetermined: tuple[str, ...] = ()
-    advice: tuple[str, ...] = ()
-    excluded: Mapping[str, str] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
+    broken: Mapping[str, float]
+    drivers: Mapping[str, Mapping[str, float]]
+    undetermined: tuple[str, ...]
+    advice: tuple[str, ...]
+    excluded: Mapping[str, str]
+    remarks: tuple[str, ...]
     search: tuple[int, int, float] = (0, 0, 0.0)
     known: Mapping[str, Amount] = field(default_factory=dict, repr=False)
-    point: bool = False
+    point: bool
 
     @property
     def is_adverse(self) -> bool:
@@ -385,17 +385,13 @@ def _best_within_limits(
     problems: Sequence[Problem], fits: Sequence[Fit], softens: bool, seed: int
 ) -> Fit | None:
     """Return the admissible impact with the least sum of squares, None if there is none."""
-    admissible: list[Fit] = []
-    for problem in problems:
-        search = Search(problem.soften(SOFTENED) if softens else problem, limited=True)
-        starts = [
-            np.array([fit.value(name) for name in search.problem.names])
-            for fit in fits
-            if fit.problem is problem
-        ]
-        nearest = search.nearest([point for point in starts if np.isfinite(point).all()], seed)
-        admissible += [nearest] if nearest else []
-    return min(admissible, key=lambda fit: fit.squares, default=None)
+    nearest = [
+        Search(problem.soften(SOFTENED) if softens else problem, limited=True).nearest(
+            [fit for fit in fits if fit.problem is problem], seed
+        )
+        for problem in problems
+    ]
+    return min(filter(None, nearest), key=lambda fit: fit.squares, default=None)
 
 
 # -- one impact
@@ -407,7 +403,6 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
     names = [name for name in result_names(problem) if _exists(fit, name)]
     open_names = [name for name in names if fit.is_open(name)]
     names = [name for name in names if name not in open_names]
-    touches = abs(fit.value("gn")) <= TIE * problem.speed
     values = {name: _without_noise(name, fit.value(name), problem.size(name)) for name in names}
     count = fit.open_directions.shape[1]
     slopes = {name: fit.slopes(name)[count:] for name in names}
@@ -420,9 +415,10 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
             if sd > RESULT_STEP * problem.size(name):
                 intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
-    vehicles = {name: fit.value(name) for name in VEHICLES}
+    remarks = problem.remarks + [NO_APPROACH] * (abs(fit.value("gn")) <= TIE * problem.speed)
+    vehicles = {n: value for n in VEHICLES if math.isfinite(value := fit.value(n))}
     return Reconstruction(
-        values=values | {name: value for name, value in vehicles.items() if math.isfinite(value)},
+        values=values | vehicles,
         intervals=intervals,
         assumed=problem.assumed | _motion_ranges(problem, open_names),
         verdict=verdict,
@@ -433,7 +429,7 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
         undetermined=tuple(open_names),
         advice=_advice(fit, open_names),
         excluded=problem.excluded,
-        remarks=(*problem.remarks, NO_APPROACH) if touches else tuple(problem.remarks),
+        remarks=tuple(remarks),
         point=problem.point,
     )
 
@@ -559,20 +555,18 @@ def _with_draws(
         if fit.open_directions.size or fit.redundancy:
             if fit.problem not in draws:
                 draws[fit.problem] = sample(fit.problem, samples, seed)
-            result = _with_sample(result, fit, draws[fit.problem], seed)
+            result = _with_sample(result, fit, draws[fit.problem])
         elif fit.sensitivity.any():
-            result = _with_sample(result, fit, push_forward(fit, samples, seed), seed)
+            result = _with_sample(result, fit, push_forward(fit, samples, seed))
         completed.append(result)
     return sorted(completed, key=lambda result: result.is_adverse)
 
 
-def _with_sample(
-    result: Reconstruction, fit: Fit, draws: Sample | None, seed: int
-) -> Reconstruction:
+def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reconstruction:
     """Return a result with the intervals of draws; a contradiction if there are none
     and no impact has all values within their limits."""
     if draws is None:
-        if not Search(fit.problem, limited=True, within=True).nearest([fit.point], seed):
+        if not Search(fit.problem, limited=True, within=True).nearest([fit]):
             return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
     exact = {name for name, amount in fit.problem.known.items() if not amount.varies}

@@ -233,5 +233,4 @@ def _warnings(box: _Box, inputs: Array) -> dict[str, float]:
     """Return the fraction of the draws that have each STATUS bit."""
     results, _ = box.results(inputs, ("STATUS",))
     bits = results.get("STATUS", np.zeros(1)).astype(int)
-    fractions = {s.name or "": float(np.mean(bits & s != 0)) for s in Status}
-    return {name: fraction for name, fraction in fractions.items() if fraction}
+    return {s.name or "": share for s in Status if (share := float(np.mean(bits & s != 0)))}

@@ -147,8 +147,7 @@ def observation(item: Known, off: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return log densities of an observation, softened at limits, and whether it is within them."""
     amount = item.amount
     if not amount.varies:
-        width = EXACT_WIDTH * item.size
-        amount = Amount(amount.value, -np.inf, np.inf, "normal", width)
+        amount = Amount(amount.value, -np.inf, np.inf, "normal", EXACT_WIDTH * item.size)
     low, high = (limit - amount.value for limit in amount.limits())
     beyond = np.maximum(np.maximum(off - high, low - off), 0.0)
     inside = log_density(amount, np.clip(off, low, high) + amount.value)

@@ -185,9 +185,8 @@ class Search:
             hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
         if self.within:
             for off, item in zip(soft, self.measured, strict=True):
-                low, high = item.amount.limits()
                 value = item.amount.value + item.sd * off
-                hard.append((value - np.clip(value, low, high)) / item.sd)
+                hard.append((value - np.clip(value, *item.amount.limits())) / item.sd)
         return _columns(soft, count), _columns(hard, count)
 
     def slopes(self, points: Array) -> list[Array]:
@@ -337,12 +336,14 @@ class Search:
                 break
         return sorted(fits, key=lambda fit: (fit.misfit > EXACT_TOL, fit.squares)), ends
 
-    def nearest(self, first: Sequence[Array], seed: int = 0) -> Fit | None:
-        """Return the least minimum at which exact values and limits hold, from points, others
+    def nearest(self, fits: Sequence[Fit], seed: int = 0) -> Fit | None:
+        """Return the least minimum at which exact values and limits hold, from impacts, others
         around them and random ones; None if there is none."""
         rng, points = np.random.default_rng(seed), np.empty((1, 0))
         if self.priors:
-            near = np.array(first).reshape(-1, len(self.sizes)) / self.sizes
+            values = [[fit.value(name) for name in self.problem.names] for fit in fits]
+            near = np.reshape(values, (-1, len(self.sizes))) / self.sizes
+            near = near[np.isfinite(near).all(1)]
             around = np.repeat(near, 2, 0)
             around += rng.normal(0, 0.1, around.shape)
             points = self.descend(np.concatenate([near, around, self.starts(BATCH // 2, rng)]))

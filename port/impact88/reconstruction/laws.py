@@ -99,11 +99,11 @@ def _balances(known: Mapping[str, Array], point: bool) -> Iterator[Balance]:
 
 def _angular_momentum(state: Mapping[str, Array]) -> Balance:
     """Return Equation 17."""
-    d, _ = evaluate(state, ("D1", "D2", "D3", "D4"))
+    d, _ = evaluate(state, ("D1", "D2", "D3", "D4", "ay", "bx"))
     terms = (
         state["IA"] * (state["WAF"] - state["WA"]),
         state["IB"] * (state["WBF"] - state["WB"]),
-        state["MB"] * (d["D1"] + d["D3"]) * (state["VBX"] - state["VX"]),
-        state["MA"] * (d["D2"] + d["D4"]) * (state["VAY"] - state["UY"]),
+        -state["MB"] * (d["D1"] + d["D3"]) * d["bx"],
+        state["MA"] * (d["D2"] + d["D4"]) * d["ay"],
     )
     return "angular momentum", "PM", terms

@@ -118,9 +118,9 @@ class Problem:
         ]
         self.lines = [n for n in COURSES if n in known and (n in names or not known[n].varies)]
         self.powers = self._powers_of_speeds(names)
-        along = [name for course in self.lines for name in (course, COURSES[course])]
-        observed = [item.name for item in self.observed]
-        self.needed = tuple(dict.fromkeys([*observed, *along, *self.powers]))
+        speeds = [COURSES[course] for course in self.lines]
+        observed = (item.name for item in self.observed)
+        self.needed = tuple(dict.fromkeys([*observed, *self.lines, *speeds, *self.powers]))
 
     # -- what is known, completed
 
@@ -263,10 +263,9 @@ class Problem:
             known.pop("MU", None)  # the plane stays across the line of motion
             known |= {name: self.known[name] for name in ("GA", "MUP")}
         for name, amount in known.items():
-            is_motion = quantity(name).unit in MOTION or name in (*COURSES, *FORCES)
-            if is_motion and not amount.varies:
+            if not amount.varies and (quantity(name).unit in MOTION or name in (*COURSES, *FORCES)):
                 sd = tolerance * self.size(name)
-                known[name] = Amount(amount.value, -np.inf, np.inf, "normal", sd)
+                known[name] = Amount(amount.value, -math.inf, math.inf, "normal", sd)
         return Problem(known, self.sign)
 
     # -- typical sizes
@@ -362,8 +361,8 @@ class Problem:
             else:
                 self.fixed[name] = amount.value
         self.names = [item.name for item in self.coordinates]
-        unknown_angles = {*ANGLES} - self.known.keys()
-        self.circular = [k for k, name in enumerate(self.names) if name in unknown_angles]
+        turns = {*ANGLES} - self.known.keys()
+        self.circular = [k for k, name in enumerate(self.names) if name in turns]
         self.ranges = [name for name in RANGES if name not in self.fixed]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
