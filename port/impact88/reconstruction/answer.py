@@ -415,7 +415,9 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
             if sd > RESULT_STEP * problem.size(name):
                 intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
-    remarks = problem.remarks + [NO_APPROACH] * (abs(fit.value("gn")) <= TIE * problem.speed)
+    remarks = [*problem.remarks]
+    if abs(fit.value("gn")) <= TIE * problem.speed:
+        remarks.append(NO_APPROACH)
     vehicles = {n: value for n in VEHICLES if math.isfinite(value := fit.value(n))}
     return Reconstruction(
         values=values | vehicles,
@@ -578,8 +580,7 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
         if np.isfinite(column).all():
             columns[name] = column
             if name not in exact and np.ptp(column) > RESULT_STEP * fit.problem.size(name):
-                middle = result.values.get(name, float(np.median(column)))
-                low, high = _interval(column, middle)
+                low, high = _interval(column, result.values.get(name, float(np.median(column))))
                 is_reversed = name in ANGLES and high - low > 180.0 - RESULT_STEP
                 intervals[name] = (-180.0, 180.0) if is_reversed else (low, high)
                 if name in result.intervals or name in result.undetermined:
