@@ -13,6 +13,7 @@ from commands import command
 import impact88
 from cases import CRASH, FILES, IMPOSSIBLE, INTERSECTION, REAR_END, RECORDER
 from impact88.cases.case import Case
+from impact88.errors import UserError
 from impact88.report.answers import ALL, ask
 from impact88.report.rounding import decimals_in, round_number
 
@@ -49,6 +50,14 @@ def test_what_a_file_leaves_open_is_reconstructed(text: str, expected: dict[str,
     assert answer.asked == "reconstruct"
     assert answer.possible
     assert {name: answer.found[name].text for name in expected} == expected
+
+
+@pytest.mark.parametrize("text", [INTERSECTION, CRASH])
+def test_correlations_that_nothing_uses_are_refused(text: str) -> None:
+    exact = {"UX": "-25", "VY": "40", "E": ".2"} if text == CRASH else {}
+    case = Case.loads(text + '\ncorrelations = "XX,YY 0.5"').with_(**exact)
+    with pytest.raises(UserError, match="correlations are those of a complete scene"):
+        ask(case)
 
 
 def test_what_contradicts_physics_is_not_possible() -> None:

@@ -14,7 +14,7 @@ from impact88.reconstruction.densities import (
     log_density,
     sampling_error,
 )
-from impact88.reconstruction.draws import Target, sample
+from impact88.reconstruction.draws import log_densities, sample
 from impact88.reconstruction.problem import WIDEST, Problem
 from impact88.reconstruction.words import remarks
 
@@ -48,7 +48,7 @@ def _rejection(entries, draws, count, rng):
     columns = {n: np.full(count, a.value) for n, a in entries.items() if not a.varies}
     columns["VX"] = rng.uniform(entries["VX"].low, entries["VX"].high, count)
     if "HA" in entries:  # flat over the speed, since the course is known
-        limit = WIDEST * draws.target.problem.speed  # of what is not known
+        limit = WIDEST * draws.problem.speed  # of what is not known
         speed = rng.uniform(0, min(1.3 * draws["SA"].max(), limit), count)
         course = np.radians(rng.uniform(entries["HA"].low, entries["HA"].high, count))
         columns |= {"UX": speed * np.cos(course), "UY": speed * np.sin(course)}
@@ -90,11 +90,11 @@ def test_draws_are_those_of_emcee(entries):
     emcee = pytest.importorskip("emcee")
     amounts = {name: read(name, str(value)) for name, value in entries.items()}
     problem = Problem(amounts)
-    draws, target = sample(problem), Target(problem)
-    d = len(target.names)
+    draws = sample(problem)
+    d = len(problem.names)
 
     def log_density(points):
-        state = target(points)
+        state = log_densities(problem, points)
         return np.where(state.holds, state.prior + state.likelihood, -np.inf)
 
     walkers = max(4 * d, 40)
@@ -106,7 +106,7 @@ def test_draws_are_those_of_emcee(entries):
     for k in range(d):
         reference = np.quantile(chain[:, k], LEVELS)
         off = np.abs(np.quantile(draws.points[:, k], LEVELS) - reference) / chain[:, k].std()
-        assert off.max() < 0.15, (target.names[k], off)
+        assert off.max() < 0.15, (problem.names[k], off)
 
 
 @pytest.mark.parametrize("seed", [5, 7])  # from a uniform E and EM: no draws, no large losses
@@ -200,6 +200,32 @@ def test_draws_of_an_intersection_are_the_momentum_of_what_was_drawn():
         assert np.abs(off).max() < 0.05 * reference.std(), name
 
 
+@pytest.mark.parametrize(
+    ("change", "verdict"), [("11.8 +- .37", "agrees"), ("11.8 +- .3", "contradictory")]
+)
+def test_draws_that_fail_contradict_nothing(monkeypatch, change, verdict):
+    """The best fit has SA beyond its limits; within all limits there is an impact, or none."""
+    monkeypatch.setattr("impact88.reconstruction.answer.sample", lambda *options: None)
+    entries = {"M": 4, "MA": 42, "MB": 31, "HA": 0, "SB": 0, "E": 0.1, "SA": "28 +- 2"}
+    result = reconstruct({**entries, "DVA": change})[0]
+    assert result.tests["SA"].adjusted < 26
+    assert result.verdict == verdict
+
+
+def test_values_known_exactly_have_no_interval():
+    entries = {"M": 4, "MA": 1500, "MB": 1200, "HA": 0, "HB": 90, "SAF": "16 +- .1"}
+    result = reconstruct({**entries, "SBF": "16 +- .1", "HAF": "43 +- 3", "HBF": "45 +- 3"})[0]
+    assert {"HA", "HB"}.isdisjoint(result.intervals)
+    assert {"SA", "SB"} <= result.intervals.keys()
+
+
+def test_a_normal_course_beside_a_half_turn_is_not_cut():
+    entries = {"M": 4, "MA": 155, "MB": 78, "SA": "normal 20 .6", "HA": 0, "SB": "normal 40 1.2"}
+    result = reconstruct({**entries, "HB": "normal 180 5", "E": 0, "MU": -10})[0]
+    low, high = result.intervals["VY"]
+    assert low == pytest.approx(-high, rel=0.1)
+
+
 def test_no_impact_within_all_limits():
     entries = {"M": 4, "MA": 1, "MB": 1, "HA": 0, "SA": "10 +- 1", "SB": 0, "E": "0 .. 0.1"}
     result = reconstruct({**entries, "SBF": "8 +- .1", "HBF": 0})[0]
@@ -245,6 +271,8 @@ def test_a_result_at_its_least_value_has_an_interval(speed):
     assert result.values["SAF"] == pytest.approx(abs(100 - 2.5 * speed) / 7.5, abs=1e-6)
     low, high = (0, np.quantile(common, 0.9)) if speed == 40 else np.quantile(common, (0.05, 0.95))
     assert result.intervals["SAF"] == pytest.approx((low, high), abs=0.03)
+    if speed == 38:  # both stop, or go on to either side: no course is excluded
+        assert result.intervals["HAF"] == (-180, 180)
 
 
 @pytest.mark.parametrize("speed", [40, 39.9])

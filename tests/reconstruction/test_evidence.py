@@ -206,7 +206,7 @@ def test_nearest_impact_within_physics_is_that_of_another_method(number):
     start = search.run()[0][0].point / search.sizes
 
     def within(x):
-        rows = problem.margins(problem.impacts(search.names, x[None] * search.sizes))
+        rows = problem.margins(problem.impacts(x[None] * search.sizes))
         return np.array([np.ravel(row)[0] for _, row in rows])
 
     ends = [
@@ -219,7 +219,7 @@ def test_nearest_impact_within_physics_is_that_of_another_method(number):
         for k in range(4)
     ]
     best = min(end.fun for end in ends if within(end.x).min() > -1e-7)
-    answer = Search(problem, limited=True).nearest([search.run()[0][0].point])
+    answer = Search(problem, limited=True).nearest([search.run()[0][0]])
     assert answer.squares == pytest.approx(best, rel=2e-3)
 
 

@@ -17,11 +17,11 @@ import numpy as np
 
 from ..cases.amounts import Amount
 from ..errors import UserError
-from ..mechanics.solve import evaluate
+from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import SCENE
-from .densities import quantile, sampling_error
+from .densities import sampling_error
 from .draws import Sample, push_forward, sample
-from .fit import EXACT_TOL, RESULT_STEP, TYPED_TOL, Fit, Search, expected_unseen
+from .fit import EXACT_TOL, RESULT_STEP, STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
 from .known import as_amounts
 from .laws import MissedLaw, missed_laws
@@ -35,7 +35,7 @@ CHECKED = 0.02  # least part of a variance that counts
 NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
 MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
-NARROWED = 0.1  # an interval that ends within this part of an assumed range reaches its end
+NARROWED = 0.1  # an interval that ends as near to an end of an assumed range of 1 reaches it
 
 NO_APPROACH = "the contact points do not approach before this impact (gn = 0): nothing collides"
 OUTSIDE = (
@@ -96,11 +96,6 @@ class Test:
     sd: float
     residual: float
 
-    @property
-    def move(self) -> float:
-        """Distance to what the others give it, in its standard deviations."""
-        return abs(self.by_others - self.measured) / self.sd
-
 
 @dataclass(frozen=True)
 class Evidence:
@@ -110,10 +105,10 @@ class Evidence:
     squares: float
     redundancy: int
     probability: float
-    at_odds: tuple[str, ...] = ()
+    at_odds: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Reconstruction:
     """One impact that agrees with what is known, or the nearest one.
 
@@ -168,24 +163,24 @@ class Reconstruction:
     """
 
     values: Mapping[str, float]
-    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    assumed: Mapping[str, str] = field(default_factory=dict)
-    verdict: str = "agrees"
-    tests: Mapping[str, Test] = field(default_factory=dict)
+    intervals: Mapping[str, tuple[float, float]]
+    assumed: Mapping[str, str]
+    verdict: str
+    tests: Mapping[str, Test]
     solutions: int = 1
     draws: Mapping[str, Array] = field(default_factory=dict)
     sampling_error: float = 0.0
-    evidence: Evidence = Evidence(0.0, 0, 1.0)
+    evidence: Evidence
     laws: tuple[MissedLaw, ...] = ()
-    broken: Mapping[str, float] = field(default_factory=dict)
-    drivers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    undetermined: tuple[str, ...] = ()
-    advice: tuple[str, ...] = ()
-    excluded: Mapping[str, str] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
+    broken: Mapping[str, float]
+    drivers: Mapping[str, Mapping[str, float]]
+    undetermined: tuple[str, ...]
+    advice: tuple[str, ...]
+    excluded: Mapping[str, str]
+    remarks: tuple[str, ...]
     search: tuple[int, int, float] = (0, 0, 0.0)
     known: Mapping[str, Amount] = field(default_factory=dict, repr=False)
-    point: bool = False
+    point: bool
 
     @property
     def is_adverse(self) -> bool:
@@ -212,10 +207,10 @@ class Reconstruction:
             names = ", ".join(open_names).replace("MUP", "MU")
             raise UserError(f"the impact found leaves {names} open; expected a determined scene")
         scene = {name: values[name] for name in inputs}
-        friction, _ = evaluate({**scene, "M": 6.0}, ("MU",))
+        friction, _ = evaluate({**scene, "M": BODIES}, ("MU",))
         scene["MU"] = float(friction["MU"])
         del scene["MUP"]
-        return {**scene, "M": 4.0 if self.point else 6.0}
+        return {**scene, "M": POINT if self.point else BODIES}
 
 
 def reconstruct(
@@ -280,10 +275,10 @@ def reconstruct(
     ]
     if choice.best and results[0].verdict == "contradictory":
         if choice.best.probability < CONTRADICTION:
-            tests, evidence = _tests(choice.best), _evidence(choice.best)
-            results[0] = replace(results[0], tests=tests, evidence=evidence)
+            evidence = _evidence(choice.best)
+            results[0] = replace(results[0], tests=_tests(choice.best), evidence=evidence)
         else:  # they agree with each other, but not with physics
-            results[0] = replace(results[0], broken=_broken(choice.best, choice.best.violations()))
+            results[0] = replace(results[0], broken=_broken(choice.best, choice.best.violations))
     if samples and not results[0].is_adverse:
         fits = [fit for fit, _ in choice.fits]
         results = _with_draws(results, fits, samples, seed)
@@ -295,12 +290,13 @@ def _with_forces(result: Reconstruction, duration: float) -> Reconstruction:
     courses of the force (chapter, Section III)."""
     if "P" not in result.values:
         return result
+    size = result.values["P"]
+    low, high = result.intervals.get("P", (size, size))
     values, intervals = {**result.values, "TF": duration}, {**result.intervals}
-    for name, times in (("FA", 1.0), ("FM2", 2.0), ("FM3", 3.0)):
-        values[name] = times * values["P"] / duration
-        if "P" in intervals:
-            low, high = intervals["P"]
-            intervals[name] = times * low / duration, times * high / duration
+    for name, factor in (("FA", 1 / duration), ("FM2", 2 / duration), ("FM3", 3 / duration)):
+        values[name] = factor * size
+        if low < high:
+            intervals[name] = factor * low, factor * high
     return replace(result, values=values, intervals=intervals)
 
 
@@ -327,11 +323,11 @@ def _choose(problems: Sequence[Problem], seed: int) -> _Choice:
         ends += number
     exact = sum(fit.misfit < EXACT_TOL for fit in fits)
     agreeing = [fit for fit in fits if fit.misfit <= EXACT_TOL and _opposes_sliding(fit)]
-    agreeing = [fit for fit in agreeing if not fit.violations().keys() & {*COURSES}] or agreeing
+    agreeing = [fit for fit in agreeing if {*COURSES}.isdisjoint(fit.violations)] or agreeing
     search = (ends, len(agreeing), expected_unseen(exact, ends))
     best = min(agreeing, key=lambda fit: fit.squares, default=None)
     consistent = [fit for fit in agreeing if fit.probability >= CONTRADICTION]
-    possible = _in_order([fit for fit in consistent if not fit.violations()])
+    possible = _in_order([fit for fit in consistent if not fit.violations])
     if possible:
         return _Choice([(fit, "agrees") for fit in possible], len(possible), search, best)
     impossible = [(fit, "impossible") for fit in _in_order(consistent)]
@@ -364,11 +360,9 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
     that no choice of axes, units or names changes the order of."""
     numbers = [fit.value(name) for name in ("KI", "E", "EM", "DVA", "EL")]
     numbers = [x for x in numbers if math.isfinite(x)]
-    numbers += [fit.value("SA" + x) + fit.value("SB" + x) for x in ("", "F")]
-    numbers.append(abs(fit.value("MUP")))
     misfit = float(f"{max(fit.squares, TIE):.6e}")
     ties = [float(f"{x:.5e}") if abs(x) > TIE else 0.0 for x in numbers]
-    return (misfit, bool(fit.violations(friction=True)), *ties)
+    return (misfit, bool(fit.nearest_limits(-STEP)), *ties)
 
 
 def _nearest(
@@ -391,17 +385,13 @@ def _best_within_limits(
     problems: Sequence[Problem], fits: Sequence[Fit], softens: bool, seed: int
 ) -> Fit | None:
     """Return the admissible impact with the least sum of squares, None if there is none."""
-    admissible: list[Fit] = []
-    for problem in problems:
-        search = Search(problem.soften(SOFTENED) if softens else problem, limited=True)
-        starts = [
-            np.array([fit.value(name) for name in search.names])
-            for fit in fits
-            if fit.problem is problem
-        ]
-        nearest = search.nearest([point for point in starts if np.isfinite(point).all()], seed)
-        admissible += [nearest] if nearest else []
-    return min(admissible, key=lambda fit: fit.squares, default=None)
+    nearest = [
+        Search(problem.soften(SOFTENED) if softens else problem, limited=True).nearest(
+            [fit for fit in fits if fit.problem is problem], seed
+        )
+        for problem in problems
+    ]
+    return min(filter(None, nearest), key=lambda fit: fit.squares, default=None)
 
 
 # -- one impact
@@ -413,7 +403,6 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
     names = [name for name in result_names(problem) if _exists(fit, name)]
     open_names = [name for name in names if fit.is_open(name)]
     names = [name for name in names if name not in open_names]
-    touches = abs(fit.value("gn")) <= TIE * problem.speed
     values = {name: _without_noise(name, fit.value(name), problem.size(name)) for name in names}
     count = fit.open_directions.shape[1]
     slopes = {name: fit.slopes(name)[count:] for name in names}
@@ -423,12 +412,15 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
         reach = NormalDist().inv_cdf(INTERVAL[1])
         for name, slope in slopes.items():
             sd = float(np.sqrt(np.square(slope).sum()))
-            if sd > TIE * problem.size(name):
+            if sd > RESULT_STEP * problem.size(name):
                 intervals[name] = (values[name] - reach * sd, values[name] + reach * sd)
         drivers = {name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()}
-    vehicles = {name: fit.value(name) for name in VEHICLES}
+    remarks = [*problem.remarks]
+    if abs(fit.value("gn")) <= TIE * problem.speed:
+        remarks.append(NO_APPROACH)
+    vehicles = {n: value for n in VEHICLES if math.isfinite(value := fit.value(n))}
     return Reconstruction(
-        values=values | {name: value for name, value in vehicles.items() if math.isfinite(value)},
+        values=values | vehicles,
         intervals=intervals,
         assumed=problem.assumed | _motion_ranges(problem, open_names),
         verdict=verdict,
@@ -439,7 +431,7 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
         undetermined=tuple(open_names),
         advice=_advice(fit, open_names),
         excluded=problem.excluded,
-        remarks=(*problem.remarks, NO_APPROACH) if touches else tuple(problem.remarks),
+        remarks=tuple(remarks),
         point=problem.point,
     )
 
@@ -480,9 +472,9 @@ def _without_noise(name: str, value: float, size: float) -> float:
 def _conditions(fit: Fit, verdict: str) -> dict[str, float]:
     """Return the conditions that an impossible impact violates, or at which a limited one lies."""
     if verdict == "impossible":
-        return _broken(fit, fit.violations())
+        return _broken(fit, fit.violations)
     if verdict == "at a limit":
-        return _broken(fit, [n for n, margin in fit.margins().items() if margin < RESULT_STEP])
+        return _broken(fit, fit.nearest_limits(RESULT_STEP))
     return {}
 
 
@@ -519,8 +511,12 @@ def _at_odds(tests: Mapping[str, Test]) -> tuple[str, ...]:
     largest = max((test.residual**2 for test in tests.values()), default=0.0)
     if largest < 1.0:
         return ()
-    names = [n for n, test in tests.items() if test.residual**2 >= NAMED_RATIO * largest]
-    return tuple(sorted(names, key=lambda name: tests[name].move)[:MAX_NAMED])
+    moves = {
+        name: abs(test.by_others - test.measured) / test.sd
+        for name, test in tests.items()
+        if test.residual**2 >= NAMED_RATIO * largest
+    }
+    return tuple(sorted(moves, key=moves.__getitem__)[:MAX_NAMED])
 
 
 # -- what results depend on
@@ -570,24 +566,23 @@ def _with_draws(
 
 def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reconstruction:
     """Return a result with the intervals of draws; a contradiction if there are none
-    and the impact has values beyond their limits."""
+    and no impact has all values within their limits."""
     if draws is None:
-        for item in fit.search.measured:
-            low, high = item.amount.limits()
-            adjusted = result.tests[item.name].adjusted
-            if abs(np.clip(adjusted, low, high) - adjusted) > RESULT_STEP * item.sd:
-                return replace(result, verdict="contradictory", intervals={}, drivers={})
+        if not Search(fit.problem, limited=True, within=True).nearest([fit]):
+            return replace(result, verdict="contradictory", intervals={}, drivers={})
         return replace(result, remarks=(*result.remarks, OUTSIDE))
+    exact = {name for name, amount in fit.problem.known.items() if not amount.varies}
     columns, intervals, error = {}, dict(result.intervals), 0.0
-    for name in result_names(draws.target.problem):
+    for name in result_names(fit.problem):
         if name not in result.values and name not in result.undetermined:
             continue
         column = unwrap_angles(name, draws[name], result.values.get(name))
         if np.isfinite(column).all():
             columns[name] = column
-            if np.ptp(column) > TIE * fit.problem.size(name):  # also where the slope is 0
-                middle = result.values.get(name, float(quantile(column, 0.5)))
-                intervals[name] = low, high = _interval(column, middle)
+            if name not in exact and np.ptp(column) > RESULT_STEP * fit.problem.size(name):
+                low, high = _interval(column, result.values.get(name, float(np.median(column))))
+                is_reversed = name in ANGLES and high - low > 180.0 - RESULT_STEP
+                intervals[name] = (-180.0, 180.0) if is_reversed else (low, high)
                 if name in result.intervals or name in result.undetermined:
                     error = max(error, sampling_error(column, (low, high), draws.family))
     return replace(
@@ -602,9 +597,10 @@ def _with_sample(result: Reconstruction, fit: Fit, draws: Sample | None) -> Reco
 def _interval(column: Array, value: float) -> tuple[float, float]:
     """Return the 90 % interval of draws: between equal tails, or beginning or ending at the value
     if it would lie outside."""
-    rank = float((column < value).mean())
-    level = float(np.clip(INTERVAL[0], rank - (INTERVAL[1] - INTERVAL[0]), rank))
-    low, high = quantile(column, (level, min(level + INTERVAL[1] - INTERVAL[0], 1.0))).tolist()
+    share = INTERVAL[1] - INTERVAL[0]
+    rank = (column < value).mean()
+    level = np.clip(INTERVAL[0], rank - share, rank)
+    low, high = np.quantile(column, (level, min(level + share, 1.0))).tolist()
     return min(low, value), max(high, value)
 
 
@@ -615,9 +611,8 @@ def _with_ends(
     range, not from what is known."""
     words = dict(assumed)
     for name in {*RANGES} & {*assumed} & {*intervals}:
-        low, high = RANGES[name]
-        pairs = zip((low, high), intervals[name], strict=True)
-        ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED * (high - low)]
+        pairs = zip(RANGES[name], intervals[name], strict=True)
+        ends = [f"{end:g}" for end, x in pairs if abs(x - end) < NARROWED]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"
     return words

@@ -17,21 +17,21 @@ import numpy as np
 from ..cases.amounts import Amount
 from ..cases.motion import line_of_motion
 from ..errors import UserError
-from ..mechanics.solve import BODIES, POINT, evaluate
+from ..mechanics.solve import POINT, evaluate
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, missing, split_names
 from ..status import Status
-from .densities import draw_correlated, quantile, sampling_error
+from .densities import draw_correlated, sampling_error
 from .extremes import box_seeds, extremes
 from .impacts import COURSES, FORCES, SPEEDS, Array
 from .known import as_amounts, check_moment
-from .problem import OWN_AXES, unwrap_angles, with_arms
+from .problem import CONTACT_POINT, ZERO, unwrap_angles, with_arms
 
 OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
 SWEEP_POINTS = 21  # of each input alone: the top of a parabola is missed by 0.3 % at most
 MAX_DRAWS = 10_000_000  # 80 MB for each output
 BOUNDED = (*RESULTS, *SPEEDS, *COURSES, *FORCES, "DVAF", "DVAR", "DVBF", "DVBR", "EL", "DT")
-INPUTS = (*SCENE, *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
+INPUTS = (*SCENE, *CONTACT_POINT)
 
 
 @dataclass(frozen=True)
@@ -96,20 +96,18 @@ class Bounds:
 class _Box:
     """The inputs: exact ones, and the limits of those that vary."""
 
-    def __init__(self, amounts: Mapping[str, Amount]) -> None:
-        amounts = {"M": Amount.exactly(BODIES), **amounts}
+    def __init__(self, amounts: dict[str, Amount]) -> None:
         if amounts["M"].value == POINT:
-            amounts = {"WA": Amount.exactly(0.0), "WB": Amount.exactly(0.0), **amounts}
+            amounts = {"WA": ZERO, "WB": ZERO} | amounts
             line = None if "GA" in amounts else line_of_motion(amounts)
             if line is not None:  # nothing acts along the plane
-                amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
+                amounts |= {"GA": Amount.exactly(line), "MU": ZERO}
         elif "EM" in amounts:
             check_moment(*amounts["EM"].limits())
+        self.amounts = amounts
         self.varied = {name: amount for name, amount in amounts.items() if amount.varies}
         if not self.varied:
             raise UserError("no value is known within limits; expected one such as 0.7 .. 0.9")
-        self.exact = {name: a.value for name, a in amounts.items() if not a.varies}
-        self.share = "MU" in amounts and amounts["MU"].share
         self.low, self.high = np.array([amount.limits() for amount in self.varied.values()]).T
         self.nominal = np.array([[amount.value for amount in self.varied.values()]])
 
@@ -117,8 +115,9 @@ class _Box:
         self, points: Array, wanted: Sequence[str]
     ) -> tuple[dict[str, Array], dict[str, tuple[str, ...]]]:
         """Return results of inputs (rows), and the inputs that other results lack."""
-        columns = with_arms({**self.exact, **dict(zip(self.varied, points.T, strict=True))})
-        if self.share:
+        columns: dict[str, Any] = {name: amount.value for name, amount in self.amounts.items()}
+        columns = with_arms(columns | dict(zip(self.varied, points.T, strict=True)))
+        if "MU" in columns and self.amounts["MU"].share:
             values, lacking = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
             if lacking:
                 return {}, lacking
@@ -209,11 +208,11 @@ def bounds(
     nominal = table(box.nominal)[0].tolist()
     results, error = {}, 0.0
     for k, name in enumerate(names):
-        lower, upper = ends[:, k].tolist()
-        levels = dict(zip(QUANTILES, quantile(draws[:, k], QUANTILES).tolist(), strict=True))
-        results[name] = Bound(nominal[k], lower, upper, levels, drivers[k])
         column = draws[np.isfinite(draws[:, k]), k]
-        error = max(error, sampling_error(column, results[name].interval))
+        levels = dict(zip(QUANTILES, np.quantile(column, QUANTILES).tolist(), strict=True))
+        lower, upper = ends[:, k].tolist()
+        results[name] = bound = Bound(nominal[k], lower, upper, levels, drivers[k])
+        error = max(error, sampling_error(column, bound.interval, np.arange(len(column))))
     columns = dict(zip(names, draws.T, strict=True))
     return Bounds(box.varied, results, _warnings(box, inputs_drawn), columns, error)
 
@@ -221,21 +220,17 @@ def bounds(
 def _drivers(box: _Box, table: Callable[[Array], Array]) -> list[dict[str, float]]:
     """Return for each output the inputs with their effect alone, largest first."""
     effects = []
-    for k in range(len(box.varied)):
+    for k, ends in enumerate(zip(box.low, box.high, strict=True)):
         sweep = np.repeat(box.nominal, SWEEP_POINTS, 0)
-        sweep[:, k] = np.linspace(box.low[k], box.high[k], SWEEP_POINTS)
+        sweep[:, k] = np.linspace(*ends, SWEEP_POINTS)
         results = table(sweep)
         effects.append(np.nanmax(results, 0) - np.nanmin(results, 0))
-    drivers = []
-    for ranges in np.transpose(effects).tolist():
-        pairs = zip(box.varied, ranges, strict=True)
-        drivers.append(dict(sorted(pairs, key=lambda pair: -pair[1])))
-    return drivers
+    rows = [zip(box.varied, effect, strict=True) for effect in np.transpose(effects).tolist()]
+    return [dict(sorted(row, key=lambda pair: -pair[1])) for row in rows]
 
 
 def _warnings(box: _Box, inputs: Array) -> dict[str, float]:
     """Return the fraction of the draws that have each STATUS bit."""
     results, _ = box.results(inputs, ("STATUS",))
     bits = results.get("STATUS", np.zeros(1)).astype(int)
-    fractions = {s.name or "": float(np.mean(bits & s != 0)) for s in Status}
-    return {name: fraction for name, fraction in fractions.items() if fraction}
+    return {s.name or "": share for s in Status if (share := float(np.mean(bits & s != 0)))}

@@ -8,6 +8,7 @@ from functools import lru_cache
 from statistics import NormalDist
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
 from ..cases.amounts import Amount
@@ -18,11 +19,6 @@ Array = NDArray[np.float64]
 TABLE_END = 8.3  # standard normal variates beyond occur once in 1e16
 ROUNDING = 1e-12  # width of an interval of which only rounding varies, relative to its ends
 TABLE_SIZE = 8193  # values of a table: quantiles to 1e-7 of the width
-
-
-def uniform(low: float, high: float) -> Amount:
-    """Return an amount between two values, none preferred."""
-    return Amount((low + high) / 2, low, high, "uniform")
 
 
 def log_density(amount: Amount, values: Array) -> Array:
@@ -37,7 +33,7 @@ def log_density(amount: Amount, values: Array) -> Array:
         return np.log(np.clip(1.0 - np.abs(off) / np.maximum(side, 1e-300), 0.0, 1.0))
 
 
-def draw(amount: Amount, count: int, rng: np.random.Generator) -> Array:
+def draw(amount: Amount, count: int, rng: Generator) -> Array:
     """Return independent random values."""
     if amount.kind == "uniform":
         return rng.uniform(amount.low, amount.high, count)
@@ -46,9 +42,7 @@ def draw(amount: Amount, count: int, rng: np.random.Generator) -> Array:
 
 def from_normal(amount: Amount, variates: Array) -> Array:
     """Return the values at the quantiles of standard normal variates (interpolated in a table)."""
-    if amount.kind == "exact":
-        return np.full(np.shape(variates), amount.value)
-    if amount.kind == "normal" and math.isinf(amount.low) and math.isinf(amount.high):
+    if -amount.low == amount.high == math.inf:
         return amount.value + amount.sd * variates
     return np.clip(np.interp(variates, *_quantile_table(amount)), amount.low, amount.high)
 
@@ -64,36 +58,27 @@ def _quantile_table(amount: Amount) -> tuple[Array, Array]:
     return variates, np.interp(shares, [0.0, *(sums / sums[-1])], values)
 
 
-def quantile(column: Array, levels: float | tuple[float, ...] | Array) -> Array:
-    """Return quantiles of the values that are numbers, by linear interpolation."""
-    ordered = np.sort(column[np.isfinite(column)])
-    return np.asarray(np.interp(levels, np.linspace(0.0, 1.0, len(ordered)), ordered))
-
-
-def sampling_error(
-    column: Array, ends: tuple[float, float], family: NDArray[np.int64] | None = None
-) -> float:
+def sampling_error(column: Array, ends: tuple[float, float], family: NDArray[np.int64]) -> float:
     """Return the larger Monte Carlo standard error of the ends of an interval of draws, relative to
     its width.
 
     It follows from the scatter of the families of draws (Lee and Whiteley 2018); of draws that are
     independent, each a family, it is the binomial one."""
-    is_below = column[:, None] < np.asarray(ends)
-    shares = is_below.mean(0)
-    off = is_below - shares
-    if family is not None:
-        off = np.stack([np.bincount(family, part) for part in off.T], 1)
-    errors = np.sqrt((off**2).sum(0)) / len(column)
-    low, high = quantile(column, np.clip(np.stack([shares - errors, shares + errors]), 0.0, 1.0))
     width = ends[1] - ends[0]
-    is_constant = width <= ROUNDING * max(map(abs, ends))
-    return 0.0 if is_constant else float((high - low).max() / 2 / width)
+    if width <= ROUNDING * max(map(abs, ends)):
+        return 0.0
+    is_below = column < np.array(ends)[:, None]
+    shares = is_below.mean(1)
+    off = [np.bincount(family, part - share) for part, share in zip(is_below, shares, strict=True)]
+    errors = np.sqrt(np.square(off).sum(1)) / len(column)
+    low, high = np.quantile(column, np.clip([shares - errors, shares + errors], 0.0, 1.0))
+    return float((high - low).max() / 2 / width)
 
 
 def draw_correlated(
     amounts: Mapping[str, Amount],
     count: int,
-    rng: np.random.Generator,
+    rng: Generator,
     correlations: Mapping[tuple[str, str], float],
 ) -> Array:
     """Return random values (rows), correlated through a Gaussian copula.
@@ -106,17 +91,17 @@ def draw_correlated(
     names = list(amounts)
     matrix = np.eye(len(names))
     for (first, second), value in correlations.items():
-        if first == second or not {first, second} <= {*names} or not -1.0 <= value <= 1.0:
+        if len({first, second} & {*names}) < 2 or not -1.0 <= value <= 1.0:
             raise UserError(
                 f"correlation of {first} and {second} is {value}; expected two of the values known "
                 f"within limits ({' '.join(names)}) and a number from -1 to 1"
             )
         row, column = names.index(first), names.index(second)
         matrix[row, column] = matrix[column, row] = value
-    sizes, vectors = np.linalg.eigh(matrix)
-    if sizes.min(initial=0.0) < -1e-9:
-        raise UserError("these correlations contradict one another")
-    root = vectors * np.sqrt(np.clip(sizes, 0.0, None))
-    normal = rng.standard_normal((count, len(amounts))) @ root.T
+    middle = np.zeros(len(names))
+    try:
+        normal = rng.multivariate_normal(middle, matrix, count, "raise", method="eigh")
+    except ValueError:
+        raise UserError("these correlations contradict one another") from None
     columns = [from_normal(item, z) for item, z in zip(amounts.values(), normal.T, strict=True)]
     return np.stack(columns, 1)

@@ -14,12 +14,14 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
+from ..cases.amounts import Amount
 from ..mechanics.laws import MAX_FRICTION
 from .densities import draw, log_density
 from .fit import Fit
-from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array, Impacts
+from .impacts import COEFFICIENTS, IMPULSES, Array, Impacts
 from .problem import RANGES, WIDEST, Known, Problem
 
 PARTICLES = 8000  # 2,000 left 45 to 80 independent families in hard problems
@@ -51,10 +53,10 @@ class State(NamedTuple):
 
 @dataclass
 class Sample:
-    """Draws: ``points`` (rows) over the coordinates of ``target``, and the number of the particle
+    """Draws: ``points`` (rows) over the coordinates of ``problem``, and the number of the particle
     of the prior that each descends from."""
 
-    target: Target
+    problem: Problem
     points: Array
     family: NDArray[np.int64]
 
@@ -67,93 +69,77 @@ class Sample:
     @cached_property
     def impacts(self) -> Impacts:
         """The impacts."""
-        return self.target.impacts(self.points)
+        return self.problem.impacts(self.points)
 
     def __getitem__(self, name: str) -> Array:
         """Return the values of a quantity."""
         return np.broadcast_to(self.impacts[name], len(self.points))
 
 
-class Target:
-    """The density of one problem over its coordinates."""
+def draw_prior(problem: Problem, count: int, rng: Generator) -> tuple[Array, Array]:
+    """Return points, and the log of their weights under the prior: coefficients that are not
+    given are drawn, and give the impulses."""
+    columns: dict[str, Array] = {}
+    weights = np.zeros(count)
+    for item in problem.coordinates:
+        name = item.name
+        if name not in IMPULSES or name in problem.known:
+            columns[name] = draw(item.amount, count, rng)
+            continue
+        name = COEFFICIENTS[IMPULSES.index(name)]
+        if name == "MUP":
+            angle = np.arctan(MAX_FRICTION)
+            columns[name] = np.tan(rng.uniform(-angle, angle, count))
+            weights += np.log1p(columns[name] ** 2)
+        else:  # half of them near 0, where an inverse makes much of little
+            share = rng.random(count) ** rng.choice([1, 3], count)
+            weights -= np.log(3.0 + share ** (-2 / 3))  # the density of this mixture
+            columns[name] = max(RANGES[name], key=abs) * share
+    impacts = problem.complete(columns)
+    with np.errstate(all="ignore"):
+        weights += problem.log_density(impacts)
+    values = impacts | columns
+    rows = [np.broadcast_to(values[name], count) for name in problem.names]
+    return np.stack(rows, 1), weights
 
-    def __init__(self, problem: Problem) -> None:
-        self.problem, self.items = problem, problem.coordinates
-        self.names = [item.name for item in self.items]
-        self.circular = np.array(
-            [
-                item.name in ("GA", *COURSES) and item.amount.high - item.amount.low >= 360
-                for item in self.items
-            ],
-            bool,
-        )
 
-    def impacts(self, points: Array) -> Impacts:
-        """Return the impacts at points."""
-        return self.problem.impacts(self.names, points)
+def log_limits(problem: Problem, points: Array) -> Array:
+    """Return the log densities of known coordinates; -inf beyond their limits."""
+    total = np.zeros(len(points))
+    for item, column in zip(problem.coordinates, points.T, strict=True):
+        low, high = item.amount.limits()
+        if item.amount.kind != "uniform":
+            total += log_density(item.amount, np.clip(column, low, high))
+        total[(column < low) | (column > high)] = -np.inf
+    return total
 
-    def start(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Return points, and the log of their weights under the prior: coefficients that are not
-        given are drawn, and give the impulses."""
-        columns: dict[str, Array] = {}
-        weights = np.zeros(count)
-        for item in self.items:
-            name = item.name
-            if name not in IMPULSES or name in self.problem.known:
-                columns[name] = draw(item.amount, count, rng)
-                continue
-            name = COEFFICIENTS[IMPULSES.index(name)]
-            if name == "MUP":
-                angle = np.arctan(MAX_FRICTION)
-                columns[name] = np.tan(rng.uniform(-angle, angle, count))
-                weights += np.log1p(columns[name] ** 2)
-            else:  # half of them near 0, where an inverse makes much of little
-                share = rng.random(count) ** rng.choice([1, 3], count)
-                weights -= np.log(3.0 + share ** (-2 / 3))  # the density of this mixture
-                columns[name] = max(RANGES[name], key=abs) * share
-        table = np.stack([*columns.values()], 1)
-        impacts = self.problem.impacts([*columns], table)
-        with np.errstate(all="ignore"):
-            weights += self.problem.log_density(impacts)
-        rows = (columns[n] if n in columns else impacts[n] for n in self.names)
-        return np.stack([np.broadcast_to(row, count) for row in rows], 1), weights
 
-    def log_prior(self, points: Array) -> Array:
-        """Return the log densities of known coordinates; -inf beyond their limits."""
-        total = np.zeros(len(points))
-        for item, column in zip(self.items, points.T, strict=True):
-            low, high = item.amount.limits()
-            inside = (column >= low) & (column <= high)
-            if item.amount.kind != "uniform":
-                total += log_density(item.amount, np.clip(column, low, high))
-            total[~inside] = -np.inf
-        return total
+def log_densities(problem: Problem, points: Array) -> State:
+    """Return points with the log densities of the prior and of the observations."""
+    prior = log_limits(problem, points)
+    rows = np.flatnonzero(np.isfinite(prior))
+    impacts = problem.impacts(points[rows])
+    prior[rows] += _log_volume(problem, impacts)
+    likelihood, holds = np.zeros(len(points)), np.zeros(len(points), bool)
+    holds[rows] = True
+    for item in problem.observed:
+        density, is_within = observation(item, problem.misfit(impacts, item))
+        likelihood[rows] += density
+        holds[rows] &= is_within
+    likelihood = np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300)
+    return State(points, prior, likelihood, holds)
 
-    def __call__(self, points: Array) -> State:
-        """Return points with the log densities of the prior and of the observations."""
-        prior = self.log_prior(points)
-        rows = np.flatnonzero(np.isfinite(prior))
-        impacts = self.impacts(points[rows])
-        prior[rows] += self._log_volume(points[rows], impacts)
-        likelihood, holds = np.zeros(len(points)), np.zeros(len(points), bool)
-        holds[rows] = True
-        for item in self.problem.observed:
-            density, is_within = observation(item, self.problem.misfit(impacts, item))
-            likelihood[rows] += density
-            holds[rows] &= is_within
-        likelihood = np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300)
-        return State(points, prior, likelihood, holds)
 
-    @np.errstate(all="ignore")
-    def _log_volume(self, points: Array, impacts: Impacts) -> Array:
-        """Return the log of the prior's density of coordinates; -inf where physics forbids."""
-        is_allowed = np.ones(len(points), bool)
-        for _, margin in self.problem.margins(impacts):
-            is_allowed &= margin >= 0
-        for name in ("UX", "UY", "VX", "VY"):
-            is_allowed &= np.abs(impacts[name]) <= WIDEST * self.problem.speed
-        volume = self.problem.log_density(impacts)
-        return np.where(is_allowed & np.isfinite(volume), volume, -np.inf)
+@np.errstate(all="ignore")
+def _log_volume(problem: Problem, impacts: Impacts) -> Array:
+    """Return the log of the prior's density of coordinates; -inf where physics forbids."""
+    volume = problem.log_density(impacts)
+    is_allowed = np.isfinite(volume)
+    for _, margin in problem.margins(impacts):
+        is_allowed &= margin >= 0
+    for name in ("UX", "UY", "VX", "VY"):
+        is_allowed &= np.abs(impacts[name]) <= WIDEST * problem.speed
+    return np.where(is_allowed, volume, -np.inf)
 
 
 @np.errstate(all="ignore")
@@ -161,14 +147,11 @@ def observation(item: Known, off: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return log densities of an observation, softened at limits, and whether it is within them."""
     amount = item.amount
     if not amount.varies:
-        width = EXACT_WIDTH * item.size
-        return -0.5 * (off / width) ** 2, np.abs(off) <= 4 * width
+        amount = Amount(amount.value, -np.inf, np.inf, "normal", EXACT_WIDTH * item.size)
     low, high = (limit - amount.value for limit in amount.limits())
     beyond = np.maximum(np.maximum(off - high, low - off), 0.0)
-    density = -0.5 * (beyond / (SOFT_LIMIT * (high - low) / 2)) ** 2
-    if amount.kind != "uniform":
-        density = density + log_density(amount, np.clip(off, low, high) + amount.value)
-    return density, beyond <= 0
+    inside = log_density(amount, np.clip(off, low, high) + amount.value)
+    return inside - 0.5 * (beyond / (SOFT_LIMIT * (high - low) / 2)) ** 2, beyond <= 0
 
 
 def sample(
@@ -188,8 +171,7 @@ def sample(
         Random seed.
     """
     rng = np.random.default_rng([seed, 1])
-    target = Target(problem)
-    first = _first(target, rng)
+    first = _first(problem, rng)
     if first is None:
         return None
     state, log_weights = first
@@ -200,15 +182,15 @@ def sample(
         state, family, power = state.chosen(rows), family[rows], step
         log_weights = np.zeros(PARTICLES)
         moves = STAGE_MOVES if power < 1.0 else LAST_MOVES
-        state, scale = _move(target, state, power, scale, moves, rng)
+        state, scale = _move(problem, state, power, scale, moves, rng)
     if state.holds.sum() < MIN_FAMILIES:
         return None
     points, families = [state.points[state.holds]], [family[state.holds]]
     while sum(map(len, points)) < count and len(points) < MAX_ROUNDS:
-        state, scale = _move(target, state, power, scale, STAGE_MOVES, rng)
+        state, scale = _move(problem, state, power, scale, STAGE_MOVES, rng)
         points.append(state.points[state.holds])
         families.append(family[state.holds])
-    draws = Sample(target, np.concatenate(points)[:count], np.concatenate(families)[:count])
+    draws = Sample(problem, np.concatenate(points)[:count], np.concatenate(families)[:count])
     return draws if draws.families >= MIN_FAMILIES else None
 
 
@@ -216,38 +198,36 @@ def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
     """Return draws around an impact that as many values determine as are known: each value is drawn
     from its own density. Draws that physics forbids do not count; None if few are left."""
     rng = np.random.default_rng([seed, 1])
-    search, target = fit.search, Target(fit.problem)
+    search, problem = fit.search, fit.problem
     columns = [
         (draw(item.amount, count, rng) - item.amount.value) / item.sd for item in search.measured
     ]
     moves = np.stack(columns, 1)
     points, is_impact = search.follow(fit.point + moves @ fit.sensitivity.T, moves)
     points = points[is_impact]
-    impacts = target.impacts(points)
-    is_allowed = np.all([row >= 0 for _, row in fit.problem.margins(impacts)], axis=0)
-    points = points[is_allowed]
-    return Sample(target, points, np.arange(len(points))) if len(points) >= MIN_FAMILIES else None
+    margins = problem.margins(problem.impacts(points))
+    points = points[np.all([row >= 0 for _, row in margins], axis=0)]
+    draws = Sample(problem, points, np.arange(len(points)))
+    return draws if len(points) >= MIN_FAMILIES else None
 
 
-def _first(target: Target, rng: np.random.Generator) -> tuple[State, Array] | None:
+def _first(problem: Problem, rng: Generator) -> tuple[State, Array] | None:
     """Return particles of the prior that physics allows, and the log of their weights."""
     states: list[State] = []
-    log_weights: list[Array] = []
+    log_weights = np.empty(0)
     for rounds in range(MAX_ROUNDS):
-        points, weights = target.start(5 * PARTICLES, rng)
-        state = target(points)
+        points, weights = draw_prior(problem, 5 * PARTICLES, rng)
+        state = log_densities(problem, points)
         rows = np.flatnonzero(np.isfinite(state.prior))
         states.append(state.chosen(rows))
-        log_weights.append(weights[rows])
-        everything = np.concatenate(log_weights)
-        if len(everything) >= 2 * PARTICLES and (
-            rounds >= PRIOR_ROUNDS or _effective_number(everything) >= PARTICLES
+        log_weights = np.append(log_weights, weights[rows])
+        if len(log_weights) >= 2 * PARTICLES and (
+            rounds >= PRIOR_ROUNDS or _effective_number(log_weights) >= PARTICLES
         ):
             break
-    if len(everything) < MIN_FAMILIES:
+    if len(log_weights) < MIN_FAMILIES:
         return None
-    state = State(*(np.concatenate(column) for column in zip(*states, strict=True)))
-    return state, everything
+    return State(*map(np.concatenate, zip(*states, strict=True))), log_weights
 
 
 def _next_power(log_weights: Array, likelihood: Array, power: float) -> float:
@@ -272,7 +252,7 @@ def _effective_number(log_weights: Array) -> float:
     return float(weights.sum() ** 2 / (weights**2).sum())
 
 
-def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+def _resample(log_weights: Array, count: int, rng: Generator) -> NDArray[np.int64]:
     """Return systematic choices in proportion to weights."""
     total = np.cumsum(np.exp(log_weights - log_weights.max()))
     places = (rng.random() + np.arange(count)) / count * total[-1]
@@ -280,12 +260,12 @@ def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArr
 
 
 def _move(
-    target: Target,
+    problem: Problem,
     state: State,
     power: float,
     scale: float,
     distance: float,
-    rng: np.random.Generator,
+    rng: Generator,
 ) -> tuple[State, float]:
     """Move particles until each was accepted ``distance`` times on average; return them and the
     adapted scale of moves."""
@@ -299,9 +279,9 @@ def _move(
         jump[rng.random(count) < MODE_JUMPS] = 1.0
         proposal = points + jump * (points[first] - points[second])
         proposal += 1e-6 * (points[first] - points[third])
-        angles = proposal[:, target.circular]
-        proposal[:, target.circular] = (angles + 180) % 360 - 180
-        new = target(proposal)
+        angles = proposal[:, problem.circular]
+        proposal[:, problem.circular] = (angles + 180) % 360 - 180
+        new = log_densities(problem, proposal)
         gain = new.prior - state.prior + power * (new.likelihood - state.likelihood)
         accept = np.log(rng.random(count)) < gain
         for column, proposed in zip(state, new, strict=True):

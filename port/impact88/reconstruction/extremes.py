@@ -8,9 +8,9 @@ extreme is attained; that no value lies farther is likely, not proven.
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import product
 
 import numpy as np
+from numpy.random import Generator
 
 from .impacts import Array
 
@@ -18,15 +18,14 @@ POPULATION = 48
 GENERATIONS = 120
 FACTOR = (0.3, 0.9)  # of a difference, from and to (Storn and Price 1997)
 CROSSOVER = 0.9
-MAX_CORNERS = 1 << 12
-INSIDE = 2000  # points inside of a box that a population starts from
+SEEDS = 6000  # points of a box that a population starts from
 
 
 def extremes(
     function: Callable[[Array], Array],
     seeds: Array,
     box: tuple[Array, Array],
-    rng: np.random.Generator,
+    rng: Generator,
 ) -> Array:
     """Return the least and the greatest values of several outputs.
 
@@ -69,18 +68,12 @@ def extremes(
         points[is_better], heights[is_better] = trial[is_better], new[is_better]
         order = np.argsort(-heights, axis=1, kind="stable")
         points, heights = points[rows, order], np.take_along_axis(heights, order, 1)
-    values = heights[:, 0].reshape(2, m // 2)
-    return np.stack([-values[0], values[1]])
+    return heights[:, 0].reshape(2, m // 2) * [[-1.0], [1.0]]
 
 
-def box_seeds(low: Array, high: Array, rng: np.random.Generator) -> Array:
-    """Return corners (all, or as many at random), points on faces and points inside of a box."""
-    d = len(low)
-    if 2**d <= MAX_CORNERS:
-        corners = np.array(list(product((0.0, 1.0), repeat=d)))
-    else:
-        corners = rng.integers(0, 2, (MAX_CORNERS, d)).astype(float)
-    inside = rng.random((INSIDE, d))
-    faces = np.where(rng.random((INSIDE, d)) < 0.5, np.round(rng.random((INSIDE, d))), inside)
-    unit = np.concatenate([corners, faces, inside])
+def box_seeds(low: Array, high: Array, rng: Generator) -> Array:
+    """Return random corners, points on faces and points inside of a box."""
+    unit = rng.random((SEEDS, len(low)))
+    share = rng.random((SEEDS, 1))  # of coordinates at an end: none inside, all at corners
+    unit = np.where(rng.random(unit.shape) < share, np.round(unit), unit)
     return np.where(unit < 1, low + unit * (high - low), high)

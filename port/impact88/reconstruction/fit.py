@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
 from .densities import draw
-from .impacts import AFTER, BEFORE, COURSES, Array, Impacts
+from .impacts import AFTER, BEFORE, Array, Impacts
 from .problem import ANGLES, Problem
 
 BATCH = 120  # starts at a time
@@ -89,7 +90,7 @@ class Fit:
     @cached_property
     def impacts(self) -> Impacts:
         """The impact."""
-        return self.problem.impacts(self.search.names, self.point[None])
+        return self.problem.impacts(self.point[None])
 
     @cached_property
     def key(self) -> Array:
@@ -109,23 +110,22 @@ class Fit:
         lengths = np.abs(shifts / self.search.sizes).max(1, initial=1e-300)
         steps = RESULT_STEP * shifts / lengths[:, None]
         points = self.point + np.concatenate([steps, -steps])
-        return lengths, self.problem.impacts(self.search.names, points)
+        return lengths, self.problem.impacts(points)
 
     def value(self, name: str) -> float:
         """Return a result of the impact."""
         return float(np.ravel(self.impacts[name])[0])
 
-    def margins(self, friction: bool = True) -> dict[str, float]:
-        """Return how far the impact lies within each condition of physics, in typical sizes."""
-        least: dict[str, float] = {}
-        for name, row in self.problem.margins(self.impacts, friction):
-            margin = float(np.nan_to_num(np.ravel(row)[0], nan=-1.0))
-            least[name] = min(margin, least.get(name, math.inf))
-        return least
+    def nearest_limits(self, margin: float) -> list[str]:
+        """Return the conditions of physics within which the impact lies by less than a margin, in
+        typical sizes."""
+        rows = self.problem.margins(self.impacts)
+        return list(dict.fromkeys(name for name, row in rows if not np.ravel(row)[0] >= margin))
 
-    def violations(self, friction: bool = False) -> dict[str, float]:
-        """Return the conditions of physics that the impact violates, with the amount."""
-        return {name: -margin for name, margin in self.margins(friction).items() if margin < -STEP}
+    @property
+    def violations(self) -> list[str]:
+        """The conditions of physics that the impact violates; friction is none."""
+        return [name for name in self.nearest_limits(-STEP) if name != "friction"]
 
     def slopes(self, name: str) -> Array:
         """Return changes of a result: along open directions, then by a standard deviation of each
@@ -158,14 +158,15 @@ class Search:
         The problem.
     limited : bool, default False
         Count what physics forbids as a misfit.
+    within : bool, default False
+        Count values beyond their limits as a misfit, too.
     """
 
-    def __init__(self, problem: Problem, limited: bool = False) -> None:
-        self.problem, self.limited = problem, limited
+    def __init__(self, problem: Problem, limited: bool = False, within: bool = False) -> None:
+        self.problem, self.limited, self.within = problem, limited, within
         self.priors = problem.coordinates
-        self.names = [item.name for item in self.priors]
         self.sizes = np.array([item.size for item in self.priors])
-        self.places = [k for k, name in enumerate(self.names) if name in problem.known]
+        self.places = [k for k, name in enumerate(problem.names) if name in problem.known]
         self.soft = [item for item in problem.observed if item.sd]
         self.hard = [item for item in problem.observed if not item.sd]
         self.measured = [*(self.priors[k] for k in self.places), *self.soft]
@@ -173,7 +174,7 @@ class Search:
     def residuals(self, points: Array) -> tuple[Array, Array]:
         """Return misfits in standard deviations, and those of exact values in sizes (columns)."""
         count = len(points)
-        impacts = self.problem.impacts(self.names, points * self.sizes)
+        impacts = self.problem.impacts(points * self.sizes)
         soft = [
             (points[:, k] * self.sizes[k] - self.priors[k].amount.value) / self.priors[k].sd
             for k in self.places
@@ -182,6 +183,10 @@ class Search:
         hard = [self.problem.misfit(impacts, item) / item.size for item in self.hard]
         if self.limited:
             hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
+        if self.within:
+            for off, item in zip(soft, self.measured, strict=True):
+                value = item.amount.value + item.sd * off
+                hard.append((value - np.clip(value, *item.amount.limits())) / item.sd)
         return _columns(soft, count), _columns(hard, count)
 
     def slopes(self, points: Array) -> list[Array]:
@@ -197,16 +202,14 @@ class Search:
         tables = self.residuals(np.repeat(points, number, 0) + np.tile(steps, (count, 1)))
         return [table.reshape(count, number, table.shape[1]).swapaxes(1, 2) for table in tables]
 
-    def starts(self, count: int, rng: np.random.Generator) -> Array:
+    def starts(self, count: int, rng: Generator) -> Array:
         """Return random points over the whole range of impacts."""
         columns = []
         for item in self.priors:
-            if item.name in self.problem.known:
+            if item.name in self.problem.known or item.name in ANGLES:
                 columns.append(draw(item.amount, count, rng) / item.size)
             elif item.name == "PN":
                 columns.append(rng.uniform(-2.0 * self.problem.point, 2.0, count))
-            elif item.name in ("GA", *COURSES):
-                columns.append(rng.uniform(-180.0, 180.0, count) / item.size)
             else:
                 columns.append(rng.uniform(-1.5, 1.5, count))
         return np.stack(columns, 1)
@@ -286,16 +289,18 @@ class Search:
         points = points / self.sizes
         exact = self.residuals(points[:1])[1].shape[1]  # with the limits of physics, if searched
         target = np.pad(moves, ((0, 0), (0, exact)))
-        free = np.delete(np.arange(len(self.names)), self.places)
-        for _ in range(NEWTON_STEPS):
+        free = np.delete(np.arange(len(self.sizes)), self.places)
+        for k in range(NEWTON_STEPS):
             residual = self._all_residuals(points)
-            misfit = np.abs(residual - target).max(1)
-            if not len(free) or (misfit < STEP).all():
+            off = residual - target
+            misfit = np.abs(off).max(1)
+            if (misfit < STEP).all():
                 break
-            slope = self._forward_slopes(points, residual, 1.0, self.places)
-            square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(free))
-            gradient = slope.swapaxes(1, 2) @ (residual - target)[..., None]
-            points[:, free] -= np.clip(np.linalg.solve(square, gradient)[..., 0], -1.0, 1.0)
+            if k % 2 == 0:  # slopes serve for two steps
+                slope = self._forward_slopes(points, residual, 1.0, self.places)
+                square = slope.swapaxes(1, 2) @ slope + STEP**2 * np.eye(len(free))
+                inverse = np.linalg.solve(square, slope.swapaxes(1, 2))
+            points[:, free] -= np.clip(np.einsum("nij,nj->ni", inverse, off), -1.0, 1.0)
         return points * self.sizes, misfit < CANDIDATE_TOL
 
     def describe(self, point: Array) -> Fit:
@@ -318,7 +323,7 @@ class Search:
 
     def run(self, seed: int = 0) -> tuple[list[Fit], int]:
         """Return all minima found, the best first, and the number of starts that led to one."""
-        if not self.names:
+        if not self.priors:
             return [self.describe(np.empty(0))], 1
         rng = np.random.default_rng(seed)
         fits: list[Fit] = []
@@ -331,12 +336,14 @@ class Search:
                 break
         return sorted(fits, key=lambda fit: (fit.misfit > EXACT_TOL, fit.squares)), ends
 
-    def nearest(self, first: Sequence[Array], seed: int = 0) -> Fit | None:
-        """Return the least minimum at which exact values and limits hold, from points, others
+    def nearest(self, fits: Sequence[Fit], seed: int = 0) -> Fit | None:
+        """Return the least minimum at which exact values and limits hold, from impacts, others
         around them and random ones; None if there is none."""
         rng, points = np.random.default_rng(seed), np.empty((1, 0))
-        if self.names:
-            near = np.array(first).reshape(-1, len(self.names)) / self.sizes
+        if self.priors:
+            values = [[fit.value(name) for name in self.problem.names] for fit in fits]
+            near = np.reshape(values, (-1, len(self.sizes))) / self.sizes
+            near = near[np.isfinite(near).all(1)]
             around = np.repeat(near, 2, 0)
             around += rng.normal(0, 0.1, around.shape)
             points = self.descend(np.concatenate([near, around, self.starts(BATCH // 2, rng)]))
@@ -384,7 +391,7 @@ class Search:
     def invariants(self, points: Array) -> Array:
         """Return all velocities (rows) of impacts (columns) in typical ones, which tell impacts
         apart."""
-        impacts = self.problem.impacts(self.names, points * self.sizes)
+        impacts = self.problem.impacts(points * self.sizes)
         velocities = [impacts[name] / self.problem.size(name) for name in (*BEFORE, *AFTER)]
         return np.stack([np.broadcast_to(x, len(points)) for x in velocities])
 
@@ -397,9 +404,10 @@ def expected_unseen(minima: int, starts: int) -> float:
 
 
 def null_space(matrix: Array) -> Array:
-    """Return an orthonormal basis (columns) of what a matrix maps to 0."""
+    """Return an orthonormal basis (columns) of what a matrix maps to 0, or to rounding."""
     _, s, vt = np.linalg.svd(matrix)
-    return np.asarray(vt[rank_of(s) :].T)
+    rank = int((s > STEP * s.max(initial=1e-300)).sum())
+    return np.asarray(vt[rank:].T)
 
 
 def pseudo_inverse(matrices: Array, scale: Array | None = None) -> Array:
@@ -411,20 +419,12 @@ def pseudo_inverse(matrices: Array, scale: Array | None = None) -> Array:
     return np.asarray((vt.swapaxes(1, 2) * inverse[:, None]) @ u.swapaxes(1, 2))
 
 
-def rank_of(sizes: Array) -> int:
-    """Return the number of singular values that are not rounding."""
-    return int((sizes > STEP * max(sizes.max(initial=0.0), 1e-300)).sum())
-
-
 def chi_square_tail(x: float, degrees: int) -> float:
     """Return the probability of a chi-square variate above ``x`` (Abramowitz and Stegun 26.4)."""
-    half, odd = x / 2, degrees % 2
-    total = math.erfc(math.sqrt(half)) if odd else 0.0
-    term = math.exp(-half) * (2 * math.sqrt(half / math.pi) if odd else 1.0)
-    for k in range((degrees - odd) // 2):
-        total += term
-        term *= half / (k + 1 + odd / 2)
-    return min(1.0, total)
+    half = min(x / 2, 1e3)  # beyond, the probability is 0 in doubles
+    powers = np.arange(degrees % 2 / 2, degrees / 2).tolist()
+    total: float = math.exp(-half) * sum(half**k / math.gamma(k + 1) for k in powers)
+    return min(1.0, total + math.erfc(math.sqrt(half)) * (degrees % 2))
 
 
 def _columns(rows: Sequence[Array], count: int) -> Array:

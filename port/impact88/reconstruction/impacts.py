@@ -39,7 +39,7 @@ EVERY = (*_ORDERED, *(name for name in RESULTS if name not in (*_ORDERED, "COND"
 """Results of an impact, in the order shown; those of `names` without a place here come last."""
 
 
-class Impacts:
+class Impacts(dict[str, Any]):
     """Impacts with all that follows from them.
 
     Parameters
@@ -50,22 +50,21 @@ class Impacts:
 
     def __init__(self, known: Mapping[str, Any]) -> None:
         completed = complete(known)
-        self.values: dict[str, Any] = completed.values
+        # points are bodies without arms and spins, and keep their headings
+        super().__init__(completed.values, M=6.0)
         self.log_volume = completed.log_volume
-        self.values["M"] = 6.0  # points are bodies without arms and spins, and keep their headings
 
     def compute(self, names: Sequence[str]) -> None:
         """Compute several quantities in one pass; they are NaN where they do not follow."""
-        absent = tuple(name for name in names if name not in self.values)
+        absent = tuple(name for name in names if name not in self)
         if absent:
-            values, missing = evaluate(self.values, absent)
-            self.values.update(values, **dict.fromkeys(missing, np.nan))
+            values, missing = evaluate(self, absent)
+            self.update(values, **dict.fromkeys(missing, np.nan))
 
-    def __getitem__(self, name: str) -> Any:
+    def __missing__(self, name: str) -> Any:
         """Return a quantity by name; the first that is not there is computed with all results."""
-        if name not in self.values:
-            self.compute((*EVERY, name))
-        return self.values[name]
+        self.compute((*EVERY, name))
+        return self[name]
 
 
 def components(size: Any, direction: Any) -> tuple[Any, Any]:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..cases.amounts import Amount, read
-from ..cases.case import Case, entry_text
+from ..cases.amounts import Amount
+from ..cases.case import Case
 from ..errors import UserError, quoted
 from ..mechanics.solve import BODIES, POINT
 from ..names import check_names
@@ -38,17 +38,13 @@ def as_amounts(known: Mapping[str, Any], allowed: Collection[str]) -> dict[str, 
     if not isinstance(known, Mapping):
         raise UserError(f"{quoted(known)} is not a mapping; expected names with their values")
     check_names(known, allowed, "quantity")
-    given = {name: value for name, value in known.items() if value is not None}
-    amounts = {name: v for name, v in given.items() if isinstance(v, Amount)}
-    others = {name: value for name, value in given.items() if name not in amounts}
-    if any(isinstance(value, str) for value in others.values()):
-        entries = {**Case.of(others, "values").entries, **amounts}
-    else:
-        entries = {n: read(n, entry_text(n, x)) for n, x in others.items()} | amounts
+    amounts = {name: value for name, value in known.items() if isinstance(value, Amount)}
+    others = {name: value for name, value in known.items() if name not in amounts}
+    entries = {**Case.of(others, "values").entries, **amounts}
     for name in ABOVE_ZERO:
         if name in entries and entries[name].varies and entries[name].limits()[0] <= 0:
             raise UserError(f"{name} is known within limits that reach 0; expected limits above 0")
-    check_equations(entries["M"].value if "M" in entries else BODIES)
+    check_equations(entries["M"].value)
     return entries
 
 

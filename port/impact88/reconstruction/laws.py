@@ -74,26 +74,24 @@ def missed_laws(known: Mapping[str, Amount], point: bool) -> tuple[MissedLaw, ..
 
 def _balances(known: Mapping[str, Array], point: bool) -> Iterator[Balance]:
     """Yield the laws of which all terms are known."""
-    vehicles = {name: known[name] for name in VEHICLES if name in known}
-    motion = {name: known[name] for name in MOTION if name in known}
+    state = {name: known[name] for name in (*VEHICLES, *MOTION) if name in known}
     for course, speed in COURSES.items():
-        if course in known and speed in known:
+        if {course, speed} <= known.keys():
             along = components(known[speed], known[course])
-            motion = {**dict(zip(SPEEDS[speed], along, strict=True)), **motion}
-    ma, mb = vehicles["MA"], vehicles["MB"]
+            state = {**dict(zip(SPEEDS[speed], along, strict=True)), **state}
+    ma, mb = state["MA"], state["MB"]
     if np.isfinite(ma * mb).all():
         for axis, names in (("x", ("UX", "VX", "VAX", "VBX")), ("y", ("UY", "VY", "VAY", "VBY"))):
-            if motion.keys() >= {*names}:
-                ua, ub, va, vb = (motion[name] for name in names)
+            if state.keys() >= {*names}:
+                ua, ub, va, vb = (state[name] for name in names)
                 yield f"momentum along {axis}", "PN", (ma * va, -ma * ua, mb * vb, -mb * ub)
         if {"DVA", "DVB"} <= known.keys():
             sizes = (ma * known["DVA"], -mb * known["DVB"])
             yield "momentum (MA DVA = MB DVB)", "PN", sizes
-    state = {**vehicles, **motion, "M": np.array(POINT if point else BODIES)}
     if not point and {*MOTION, *VEHICLES} <= state.keys():
         yield _angular_momentum(state)
     given = [name for name in FOLLOWING if name in known and known[name][0] != PIVOT]
-    values, _ = evaluate(state, given)
+    values, _ = evaluate({**state, "M": np.array(POINT if point else BODIES)}, given)
     for name, value in values.items():
         if np.isfinite(value).all() and known.keys() >= {*SPEEDS.get(name, ())}:
             yield name, name, (known[name], -value)
@@ -101,11 +99,11 @@ def _balances(known: Mapping[str, Array], point: bool) -> Iterator[Balance]:
 
 def _angular_momentum(state: Mapping[str, Array]) -> Balance:
     """Return Equation 17."""
-    d, _ = evaluate(state, ("D1", "D2", "D3", "D4"))
+    d, _ = evaluate(state, ("D1", "D2", "D3", "D4", "ay", "bx"))
     terms = (
         state["IA"] * (state["WAF"] - state["WA"]),
         state["IB"] * (state["WBF"] - state["WB"]),
-        state["MB"] * (d["D1"] + d["D3"]) * (state["VBX"] - state["VX"]),
-        state["MA"] * (d["D2"] + d["D4"]) * (state["VAY"] - state["UY"]),
+        -state["MB"] * (d["D1"] + d["D3"]) * d["bx"],
+        state["MA"] * (d["D2"] + d["D4"]) * d["ay"],
     )
     return "angular momentum", "PM", terms

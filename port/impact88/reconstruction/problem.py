@@ -10,21 +10,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from ..cases.amounts import Amount
-from ..cases.motion import OWN_AXES as OWN_AXES
-from ..cases.motion import line_of_motion
+from ..cases.motion import OWN_AXES, line_of_motion
 from ..errors import UserError
 from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, ENERGY_TOLERANCE, NO_MOMENT
 from ..mechanics.laws import Scale, margins
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
-from .densities import uniform
 from .impacts import (
     COEFFICIENTS,
     COURSES,
@@ -40,7 +38,10 @@ from .impacts import (
 
 MOTION = (VELOCITY, SPIN, ENERGY, IMPULSE, TURNING, PERCENT)
 ARMS = ("IA", "IB", "DA", "DB", "PA", "PB")
+WITH_ARMS = ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS")  # what depends on the arms
 ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
+ZERO = Amount.exactly(0.0)
+CONTACT_POINT = (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
 """Ranges of coefficients that are not given (listing, lines 40 and 50)."""
@@ -50,7 +51,6 @@ LOST = {"E": 0.0, "EM": 0.0, "MUP": PIVOT}  # coefficients that leave nothing of
 FINAL = ("SAF", "HAF", "VAX", "VAY")
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
 CRUSH = ("ELA", "EBSA", "ELB", "EBSB")
-MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
 TOUCH = 1e-9  # least speed, closing speed and impulse that count, over typical ones
 
 
@@ -105,12 +105,11 @@ class Problem:
         self._set_friction(known, sign)
         self._set_scales()
         self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
-        self._turns_with_course = [v for v in self.facing if not self.point]
         self.frames: dict[str, tuple[str, str]] = {}
         for vehicle in "AB":
             self.frames[vehicle] = self._frame(vehicle)
         self.coordinates: list[Known] = []
-        self.fixed: dict[str, float] = {}
+        self.fixed = {"M": POINT if self.point else BODIES}
         names = self._choose_coordinates()
         self.observed = [
             Known(name, amount, self.size(name))
@@ -119,9 +118,9 @@ class Problem:
         ]
         self.lines = [n for n in COURSES if n in known and (n in names or not known[n].varies)]
         self.powers = self._powers_of_speeds(names)
-        along = [name for course in self.lines for name in (course, COURSES[course])]
-        observed = [item.name for item in self.observed]
-        self.needed = tuple(dict.fromkeys([*MARGIN_INPUTS, *observed, *along, *self.powers]))
+        speeds = [COURSES[course] for course in self.lines]
+        observed = (item.name for item in self.observed)
+        self.needed = tuple(dict.fromkeys([*observed, *self.lines, *speeds, *self.powers]))
 
     # -- what is known, completed
 
@@ -154,7 +153,7 @@ class Problem:
         if np.isinf(known["MB"].value):
             known.setdefault("IB", known["MB"])
             for name in ("SB", "WB", "TB", "DB", "PB"):
-                known.setdefault(name, Amount.exactly(0.0))
+                known.setdefault(name, ZERO)
 
     def _set_at_rest(self, known: dict[str, Amount]) -> None:
         """Replace a speed of 0 by two velocities of 0."""
@@ -163,24 +162,24 @@ class Problem:
                 del known[speed]
                 known.pop(course, None)
                 for axis in (x, y):
-                    known.setdefault(axis, Amount.exactly(0.0))
+                    known.setdefault(axis, ZERO)
 
     def _complete_bodies(self, known: dict[str, Amount]) -> None:
         """Treat bodies of which only the momentum is used as points; refuse missing dimensions."""
         for vehicle, axes in OWN_AXES.items():
             if any(name in known for name in axes):
-                known.setdefault("D" + vehicle, Amount.exactly(0.0))
-                known.setdefault("P" + vehicle, Amount.exactly(0.0))
+                known.setdefault("D" + vehicle, ZERO)
+                known.setdefault("P" + vehicle, ZERO)
         absent = [name for name in VEHICLES if name not in known]
         if not absent:
             self._turn_plane(known)
             return
-        turning = [n for n in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS") if n in known]
+        turning = [name for name in WITH_ARMS if name in known]
         if turning and {*absent} & {*ARMS, "GA"}:
             raise UserError(f"{', '.join(turning)} cannot be used: {missing(absent)}")
         if arms := [name for name in absent if name in ARMS]:
             self.point = self.without_arms = True
-            names = ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS", "PM", "KI", "KF", "EL")
+            names = (*WITH_ARMS, "PM", "KI", "KF", "EL")
             self.excluded |= dict.fromkeys(names, ", ".join(arms))
         elif "GA" in absent:
             raise UserError(missing(["GA"]))
@@ -191,10 +190,10 @@ class Problem:
         """Set the dimensions and spins that point masses do not have, and their contact plane."""
         if "GA" not in known:
             self._take_plane_across(known)
-        for name in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY", "WAF", "WBF", "EM"):
+        for name in (*CONTACT_POINT, "WAF", "WBF"):
             known.pop(name, None)
         known |= dict.fromkeys(("IA", "IB"), Amount.exactly(1.0))
-        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB"), Amount.exactly(0.0))
+        known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "EM"), ZERO)
         for vehicle in "AB":
             if "T" + vehicle not in known:
                 known["T" + vehicle] = Amount.exactly(np.nan)
@@ -202,15 +201,14 @@ class Problem:
 
     def _turn_plane(self, known: dict[str, Amount]) -> None:
         """Turn GA by 180 degrees where it puts each vehicle on the other's side."""
-        names = (*VEHICLES, *OWN_AXES["A"], *OWN_AXES["B"])
+        names = (*VEHICLES, *CONTACT_POINT)
         values = {name: known[name].value for name in names if name in known}
-        if np.isnan([*values.values()]).any() or known["GA"].varies:
-            return
         arms, _ = evaluate(with_arms(values), ("at", "bt"))
-        a, b = float(arms["at"]), float(arms["bt"])
-        if min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0:
+        a, b = (float(arm) for arm in arms.values())
+        is_turned = min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0
+        if is_turned and not known["GA"].varies:
             angle = known["GA"].value
-            opposite = angle - 180.0 if angle > 0 else angle + 180.0
+            opposite = math.remainder(angle + 180.0, 360.0)
             known["GA"] = Amount.exactly(opposite)
             self.remarks.append(
                 f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is "
@@ -220,12 +218,12 @@ class Problem:
     def _take_plane_across(self, known: dict[str, Amount]) -> None:
         """Choose the contact plane of point masses: across the motion where all of it is along one
         line, else across the impulse, whose direction is open (GA)."""
-        has_direction = bool({*FORCES, "DVAR", "DVBR"} & known.keys())
         is_locked = "MU" in known and known["MU"].value == PIVOT
+        is_locked &= known.keys().isdisjoint((*FORCES, "DVAR", "DVBR"))  # no direction given
         names: tuple[str, ...] = ("E", "MUP", "PN", "PT", "VC", "VS", "MUC")
-        if is_locked and not has_direction and _is_zero(known.get("E", Amount.exactly(0.0))):
-            known["GA"] = Amount.exactly(0.0)  # equal velocities after: the plane has no effect
-            known["E"] = Amount.exactly(0.0)
+        if is_locked and _is_zero(known.get("E", ZERO)):
+            known["GA"] = ZERO  # equal velocities after: the plane has no effect
+            known["E"] = ZERO
             self.without_plane = True
             names = names[1:]
         else:
@@ -240,7 +238,7 @@ class Problem:
                 names = ()
             elif "MU" in known or "MUP" in known:
                 raise UserError(f"MU cannot be used: {missing(['GA'])}")
-            known["MUP"] = Amount.exactly(0.0)
+            known["MUP"] = ZERO
         for name in names:
             self.excluded.setdefault(name, "GA")
 
@@ -251,8 +249,7 @@ class Problem:
         self.share = "MU" in known and known["MU"].share
         self.sign = 0
         if "MU" in known and not self.share:
-            size = replace(known.pop("MU"), text="")
-            known["MUP"] = size.mapped(Fraction(-1)) if sign < 0 else size
+            known["MUP"] = known.pop("MU").mapped(Fraction(sign or 1))
             self.sign = sign
 
     def soften(self, tolerance: float) -> Problem:
@@ -266,10 +263,9 @@ class Problem:
             known.pop("MU", None)  # the plane stays across the line of motion
             known |= {name: self.known[name] for name in ("GA", "MUP")}
         for name, amount in known.items():
-            is_motion = quantity(name).unit in MOTION or name in (*COURSES, *FORCES)
-            if is_motion and not amount.varies:
+            if not amount.varies and (quantity(name).unit in MOTION or name in (*COURSES, *FORCES)):
                 sd = tolerance * self.size(name)
-                known[name] = Amount(amount.value, -np.inf, np.inf, "normal", sd)
+                known[name] = Amount(amount.value, -math.inf, math.inf, "normal", sd)
         return Problem(known, self.sign)
 
     # -- typical sizes
@@ -278,7 +274,7 @@ class Problem:
         """Set the reduced mass, the radius of gyration and the largest velocity that is likely."""
         known = self.known
         masses = [known[name].value for name in ("MA", "MB")]
-        if min(masses) <= 0 or not np.isfinite(min(masses)):
+        if not 0 < min(masses) < math.inf:
             raise UserError("expected MA and MB above 0, and not both inf")
         self.mass = 1.0 / sum(1.0 / mass for mass in masses)
         ratios = [known["I" + v].value / known["M" + v].value for v in "AB"]
@@ -295,9 +291,9 @@ class Problem:
                 ENERGY: float(np.sqrt(2.0 * value / moving)),
             }
             sizes.append(as_speed.get(quantity(name).unit, 0.0))
-        if not max(sizes):
-            raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
         self.speed = max(sizes)
+        if not self.speed:
+            raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
         self.scale = Scale(self.speed, self.mass, self.gyration)
 
     def size(self, name: str) -> float:
@@ -333,7 +329,9 @@ class Problem:
             (f"S{vehicle}F", f"H{vehicle}F"),
         ]
         is_late = vehicle == "B" and any(name in FINAL for name in self.frames["A"])
-        is_early = vehicle in self._turns_with_course or (is_late and not self._leaves("E", "MUP"))
+        is_early = (vehicle in self.facing and not self.point) or (
+            is_late and not self._leaves("E", "MUP")
+        )
         # a course is smooth where the vehicle stops only as a coordinate
         is_early = is_early or (course in self.known and self.known[course].varies)
         frames = before if is_early else after
@@ -351,28 +349,32 @@ class Problem:
         for coefficient, impulse in zip(COEFFICIENTS, IMPULSES, strict=True):
             if coefficient in self.known:
                 names.append(coefficient)
-            elif not (self.point and coefficient == "EM"):
+            else:
                 names.append(impulse)  # over impulses, what is known is linear
                 self._note_range(coefficient, impulse)
         names += VEHICLES
-        names += [n for n in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY") if n in self.known]
+        names += [name for name in CONTACT_POINT if name in self.known]
         for name in names:
-            amount = self.known.get(name) or uniform(*self._widest(name))
+            amount = self.known.get(name) or self._widest(name)
             if amount.varies:
                 self.coordinates.append(Known(name, amount, self.size(name)))
             else:
                 self.fixed[name] = amount.value
-        self.ranges = [n for n in RANGES if n not in self.fixed and not (self.point and n == "EM")]
+        self.names = [item.name for item in self.coordinates]
+        turns = {*ANGLES} - self.known.keys()
+        self.circular = [k for k, name in enumerate(self.names) if name in turns]
+        self.ranges = [name for name in RANGES if name not in self.fixed]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
         return set(names)
 
-    def _widest(self, name: str) -> tuple[float, float]:
-        """Return the limits of a coordinate of which nothing is known."""
-        if name in ANGLES:
-            return -180.0, 180.0
-        reach = np.inf if name in IMPULSES else WIDEST * self.size(name)
-        return (0.0 if name in SPEEDS else -reach), reach
+    def _widest(self, name: str) -> Amount:
+        """Return the range of a coordinate of which nothing is known."""
+        reach = 180.0 if name in ANGLES else WIDEST * self.size(name)
+        if name in IMPULSES:
+            reach = math.inf
+        low = 0.0 if name in SPEEDS else -reach
+        return Amount((low + reach) / 2, low, reach, "uniform")
 
     def _leaves(self, *coefficients: str) -> bool:
         """Return False if nothing is left of a relative velocity: no inverse leads back from it
@@ -391,21 +393,24 @@ class Problem:
 
     # -- impacts
 
-    def impacts(self, names: list[str], points: Array) -> Impacts:
-        """Return impacts of points (rows) over coordinates ``names``; coefficients may be in place
-        of impulses."""
-        values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
+    def impacts(self, points: Array) -> Impacts:
+        """Return impacts of points (rows) over the coordinates."""
+        return self.complete(dict(zip(self.names, points.T, strict=True)))
+
+    def complete(self, columns: Mapping[str, Array]) -> Impacts:
+        """Return impacts of coordinates; coefficients may be in place of impulses."""
+        values: dict[str, Any] = {**self.fixed, **columns}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
-            impacts = Impacts(with_arms({"M": 4.0 if self.point else 6.0, **values}))
+            impacts = Impacts(with_arms(values))
             impacts.compute([n for v in self.facing for n in ("S" + v, "H" + v, f"H{v}F")])
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 is_at_rest = impacts["S" + vehicle] < TOUCH * self.speed
                 course = np.where(is_at_rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
-                impacts.values["T" + vehicle] = course + FACING[vehicle]
+                impacts["T" + vehicle] = course + FACING[vehicle]
             impacts.compute(self.needed)
             if self.share:
-                impacts.values["MU"] = impacts["MUP"] / impacts["MUC"]
+                impacts["MU"] = impacts["MUP"] / impacts["MUC"]
         return impacts
 
     def _make_cartesian(self, values: dict[str, Any]) -> None:
@@ -414,7 +419,7 @@ class Problem:
             if frame[0] in SPEEDS:
                 x, y = SPEEDS[frame[0]]
                 values[x], values[y] = components(values.pop(frame[0]), values.pop(frame[1]))
-            if vehicle in self._turns_with_course:
+            if vehicle in self.facing and not self.point:
                 x, y, _, _ = VECTORS[vehicle]
                 _, course = _polar(values[x], values[y])
                 values["T" + vehicle] = course + FACING[vehicle]
@@ -451,7 +456,7 @@ class Problem:
     # -- conditions
 
     @np.errstate(all="ignore")
-    def margins(self, impacts: Impacts, friction: bool = True) -> list[tuple[str, Any]]:
+    def margins(self, impacts: Impacts) -> list[tuple[str, Any]]:
         """Return how far impacts lie within what physics allows, by condition, in typical sizes.
 
         The vehicles travel along their courses, approach, push and gain no energy; e, e_m and
@@ -464,7 +469,7 @@ class Problem:
                 rows.append((course, impacts[speed] * along / self.speed + TOUCH))
         if self.without_arms:
             return rows
-        inside = margins(impacts.values, self.scale)
+        inside = margins(impacts, self.scale)
         rows.append(("energy", inside["energy"][0] + ENERGY_TOLERANCE))
         if self.without_plane:
             return rows
@@ -472,7 +477,7 @@ class Problem:
         side = np.where(inside["approach"][0] < 0, -1.0, 1.0) if self.point else 1.0
         rows += [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
         rows += [(name, row) for name in self.ranges for row in inside[name]]
-        if "MUP" not in self.known and friction:
+        if "MUP" not in self.known:
             rows += [("friction", side * row) for row in inside["friction"]]
         if self.sign:
             rows.append(("sign of MU", -self.sign * impacts["gt"] / self.speed))
@@ -482,16 +487,15 @@ class Problem:
 def with_arms(values: dict[str, Any]) -> dict[str, Any]:
     """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
     PB."""
+    shift_x, shift_y = (values.get(name, 0.0) for name in ("CX", "CY"))
     for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
         distance, angle, axes = "D" + vehicle, "P" + vehicle, OWN_AXES[vehicle]
         if any(name in values for name in axes):
-            forward, leftward = (values.get(name, 0.0) for name in axes)
-            values[distance], values[angle] = _polar(forward, leftward)
+            values[distance], values[angle] = _polar(*(values.get(name, 0.0) for name in axes))
         if "CX" in values or "CY" in values:
             heading = values["T" + vehicle]
             x, y = components(values[distance], heading + values[angle])
-            x, y = x + side * values.get("CX", 0.0), y + side * values.get("CY", 0.0)
-            values[distance], direction = _polar(x, y)
+            values[distance], direction = _polar(x + side * shift_x, y + side * shift_y)
             values[angle] = direction - heading
     return values
 
@@ -531,6 +535,6 @@ def unwrap_angles(name: str, column: Array, middle: float | None) -> Array:
 
 def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:
     """Return the signs of P_t that MU leaves open (line 400 decides by the sliding)."""
-    friction = known.get("MU", Amount.exactly(0.0))
+    friction = known.get("MU", ZERO)
     is_exact = not friction.varies and friction.value in (0.0, PIVOT)
     return (0,) if friction.share or is_exact else (1, -1)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cases.case import POINT_DEFAULTS
 from ..errors import UserError
 from ..mechanics.solve import BODIES, POINT, evaluate
 from ..names import check_names, missing
@@ -21,11 +22,13 @@ from .impacts import AFTER, BEFORE, COEFFICIENTS, IMPULSES, PIVOT, VEHICLES, Arr
 from .known import check_equations, check_moment
 
 RANK_TOL = 1e-10  # relative size of singular values, and of sliding, that is 0
-DETERMINED_TOL = 1e-7  # change of a quantity along open directions that is rounding
+DETERMINED_TOL = (
+    1e-6  # change of a quantity along open directions that is rounding, over `RANK_TOL`
+)
 STATE = (*BEFORE, *IMPULSES)
-MOTION = (*BEFORE, *AFTER, *IMPULSES)
+MOTION = (*BEFORE, *AFTER)
 CONTACT = ("gn", "VS", "gt_after", "ia", "ib")
-UNKNOWNS = (*BEFORE, *AFTER, *COEFFICIENTS)
+UNKNOWNS = (*MOTION, *COEFFICIENTS)
 
 
 @dataclass(frozen=True)
@@ -98,17 +101,16 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     equations = values.pop("M", BODIES)
     check_equations(equations)
     if np.all(equations == POINT):
-        values |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB", "PM"), np.zeros(()))
-        values |= dict.fromkeys(("IA", "IB"), np.ones(()))
-        values = {"TA": np.zeros(()), "TB": np.zeros(()), **values}
+        values |= {name: np.array(float(text)) for name, text in POINT_DEFAULTS.items()}
     elif "EM" in values:
         check_moment(values["EM"], values["EM"])
     if lacking := [name for name in VEHICLES if name not in values]:
         raise UserError(missing(lacking))
     names = [n for n in UNKNOWNS if n not in values] if unknown is None else list(unknown)
     check_names(names, UNKNOWNS, "value to solve for")
-    shape = np.broadcast_shapes(*(x.shape for x in values.values()))
-    values = {name: np.broadcast_to(x, shape).ravel() for name, x in values.items()}
+    arrays = np.broadcast_arrays(*values.values())
+    shape = arrays[0].shape
+    values = dict(zip(values, map(np.ravel, arrays), strict=True))
     solutions = [_solve(reading, names, shape) for reading in _readings(values)]
     solutions = [solution for solution in solutions if solution.agrees.any()]
     wanted = [name for name in names if name in MOTION] or names
@@ -128,36 +130,28 @@ def _readings(values: dict[str, Array]) -> list[dict[str, Array]]:
 
 def _solve(v: Mapping[str, Array], names: Sequence[str], shape: tuple[int, ...]) -> Solution:
     """Return the unknowns of elements, in their shape."""
-    count = len(v["MA"])
     bodies = {name: v[name] for name in VEHICLES}
-    largest = [np.abs(v[name]).max(initial=0.0) for name in (*BEFORE, *AFTER) if name in v]
-    speed = float(max(largest, default=0.0)) or 1.0
+    known = [name for name in MOTION if name in v]
+    speed = max((float(np.abs(v[name]).max(initial=0.0)) for name in known), default=0.0) or 1.0
     mass = 1.0 / (1.0 / v["MA"] + 1.0 / v["MB"])
-    sizes = np.stack([np.ones(count)] * 6 + [mass] * 3, 1) * speed
-    columns = _columns(bodies, count)
-    equations = [name for name in (*BEFORE, *AFTER, *COEFFICIENTS, "PM") if name in v]
-    matrix = (
-        np.stack([_row(name, v[name], columns, mass) for name in equations], 1) * sizes[:, None]
-    )
-    right = np.stack([v[n] * (n in BEFORE or n in AFTER) for n in equations], 1)
+    sizes = np.stack([np.ones_like(mass)] * 6 + [mass] * 3) * speed
+    columns = _columns(bodies, sizes)
+    equations = {name: _row(name, v[name], columns, mass) for name in UNKNOWNS if name in v}
+    matrix = np.stack([*equations.values()]).transpose(2, 0, 1)
+    right = np.stack([v[name] * (name in MOTION) for name in equations], 1)
     scale = np.abs(matrix).max(2) + 1e-300
     matrix, right = matrix / scale[..., None], right / scale
-    u, s, vt = np.linalg.svd(matrix)
-    rank = s.shape[1]
-    keep = s > RANK_TOL * s[:, :1]
-    parts = np.einsum("nij,ni->nj", u[:, :, :rank], right) / np.where(keep, s, np.inf)
-    state = np.einsum("njk,nj->nk", vt[:, :rank], parts)
-    mismatch = np.abs(np.einsum("nij,nj->ni", matrix, state) - right).max(1) * speed
-    is_open = np.pad(~keep, ((0, 0), (0, len(STATE) - rank)), constant_values=True)
-    directions = np.where(is_open[..., None], vt, 0.0)
-    impacts = Impacts({**bodies, **dict(zip(STATE, (state * sizes).T, strict=True))})
+    inverse = np.linalg.pinv(matrix, RANK_TOL)
+    state = np.einsum("nij,nj->in", inverse, right)
+    mismatch = np.abs(np.einsum("nij,jn->ni", matrix, state) - right).max(1) * speed
+    open_changes = np.eye(len(STATE)) - inverse @ matrix
+    impacts = Impacts({**bodies, **dict(zip(STATE, state * sizes, strict=True))})
     unknowns = {}
     for name in names:
-        value = np.broadcast_to(impacts[name], count)
-        slopes = _row(name, value, columns, mass) * sizes
-        change = np.abs(np.einsum("njk,nk->nj", directions, slopes)).max(1)
-        is_determined = change <= DETERMINED_TOL * np.abs(slopes).max(1)
-        unknowns[name] = np.where(is_determined, value, np.nan).reshape(shape)
+        slopes = _row(name, impacts[name], columns, mass)
+        change = np.abs(np.einsum("njk,kn->jn", open_changes, slopes)).max(0)
+        is_determined = change <= DETERMINED_TOL * np.abs(slopes).max(0)
+        unknowns[name] = np.where(is_determined, impacts[name], np.nan).reshape(shape)
     agrees = np.isfinite(mismatch)
     if "MU" in v:
         sliding = impacts["gt"] / speed
@@ -166,25 +160,23 @@ def _solve(v: Mapping[str, Array], names: Sequence[str], shape: tuple[int, ...])
     return Solution(unknowns, mismatch.reshape(shape), agrees.reshape(shape))
 
 
-def _columns(bodies: Mapping[str, Array], count: int) -> dict[str, Array]:
+def _columns(bodies: Mapping[str, Array], sizes: Array) -> dict[str, Array]:
     """Return velocities, impulses and relative velocities of impacts of which one component of the
-    state is 1 and the others are 0: element, component."""
-    zeros = dict.fromkeys(STATE, np.zeros(count))
-    impacts = [Impacts({**bodies, **zeros, name: np.ones(count)}) for name in STATE]
-    state = {name: np.stack([np.broadcast_to(i[name], count) for i in impacts]) for name in MOTION}
+    state has its size and the others are 0: component, element."""
+    states = np.eye(len(STATE))[..., None] * sizes[:, None]
+    impacts = Impacts({**bodies, **dict(zip(STATE, states, strict=True))})
+    state = {name: impacts[name] for name in (*MOTION, *IMPULSES)}
     relative, _ = evaluate({**bodies, "M": BODIES, "MU": 0.0, **state}, CONTACT)
-    return {name: x.T for name, x in (*state.items(), *relative.items())}
+    return state | relative
 
 
-def _row(name: str, value: Array, columns: Mapping[str, Array], mass: Array) -> Array:
-    """Return a velocity, or Equation 15, 16 or 18 with the value of its coefficient, as a row over
-    the state."""
-    x = value[:, None]
+def _row(name: str, x: Array, columns: Mapping[str, Array], mass: Array) -> Array:
+    """Return a velocity, or Equation 15, 16 or 18 with the value of its coefficient, over the
+    state."""
     if name == "E":
         return np.asarray(columns["VS"] + x * columns["gn"])
     if name == "MUP":
-        sliding = columns["gt_after"] * mass[:, None]
-        return np.where(x == PIVOT, sliding, columns["PT"] - x * columns["PN"])
+        return np.where(x == PIVOT, columns["gt_after"] * mass, columns["PT"] - x * columns["PN"])
     if name == "EM":
         push = columns["PM"] * (columns["ia"] + columns["ib"])
         return np.asarray((1.0 - x) * (columns["WAF"] - columns["WBF"]) - x * push)

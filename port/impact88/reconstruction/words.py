@@ -127,16 +127,18 @@ def checks(result: Reconstruction, view: View = PLAIN) -> tuple[str, ...]:
 def check(result: Reconstruction, name: str, view: View = PLAIN) -> str:
     """Return a known value beside the others."""
     test = result.tests[name]
-    given, others = (number(name, x, view) for x in (test.measured, test.by_others))
-    distance = _distance(result, name, abs(test.residual))
-    return f"{entry(result, name)} {given} given, {others} by the others{distance}"
+    texts = _beside(result, name, test.by_others, abs(test.residual), view)
+    return "{} {} given, {} by the others{}".format(*texts)
 
 
-def _distance(result: Reconstruction, name: str, distance: float) -> str:
-    """Return a distance in standard deviations, "" for an exact value."""
-    if not any(result.known[part].varies for part in _entries(result, name)):
-        return ""
-    return f" ({distance:.1f} sd)"
+def _beside(
+    result: Reconstruction, name: str, other: float, distance: float, view: View
+) -> tuple[str, ...]:
+    """Return texts of a value's name, of the value given, of another one, and of their distance in
+    standard deviations, "" for an exact value."""
+    varies = any(result.known[part].varies for part in _entries(result, name))
+    values = (number(name, x, view) for x in (result.tests[name].measured, other))
+    return entry(result, name), *values, f" ({distance:.1f} sd)" * varies
 
 
 def refusal(result: Reconstruction, view: View = PLAIN) -> str:
@@ -148,8 +150,12 @@ def refusal(result: Reconstruction, view: View = PLAIN) -> str:
     moves = {n: abs(t.adjusted - t.measured) / t.sd for n, t in result.tests.items()}
     farthest = sorted((name for name in moves if moves[name] >= 1.0), key=lambda n: -moves[n])
     if result.verdict == "contradictory" and farthest:
-        text += ". The nearest one has "
-        text += "; ".join(_move(result, name, view) for name in farthest[:MAX_NAMED])
+        text += ". The nearest one has " + "; ".join(
+            "{0} at {2}, not {1}{3}".format(
+                *_beside(result, name, result.tests[name].adjusted, moves[name], view)
+            )
+            for name in farthest[:MAX_NAMED]
+        )
     return text
 
 
@@ -169,16 +175,9 @@ def _broken(result: Reconstruction, condition: str, view: View) -> str:
     return f"{words} ({name} {text})" if result.is_adverse else words
 
 
-def _move(result: Reconstruction, name: str, view: View) -> str:
-    test = result.tests[name]
-    adjusted, measured = (number(name, x, view) for x in (test.adjusted, test.measured))
-    distance = _distance(result, name, abs(test.adjusted - test.measured) / test.sd)
-    return f"{entry(result, name)} at {adjusted}, not {measured}{distance}"
-
-
 def warnings(result: Reconstruction, view: View = PLAIN) -> list[str]:
     """Return reasons to doubt the answer: why no impact agrees, that none is within all limits."""
-    reasons = [refusal(result, view), OUTSIDE if OUTSIDE in result.remarks else ""]
+    reasons = [refusal(result, view), *(line for line in result.remarks if line == OUTSIDE)]
     return [reason for reason in reasons if reason]
 
 

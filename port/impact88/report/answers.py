@@ -167,10 +167,15 @@ def ask(case: Case, wanted: Sequence[str] = ()) -> Answer:
     UserError
         For a case that gives too little, and for values that no impact has.
     """
-    is_scene = {*case.entries} <= {*SCENE, *POINTS}
-    if is_scene and not evaluate(case.numbers, FINAL_VELOCITIES[:4])[1]:
-        return _forward(case, wanted)
-    return _reconstruct(case, wanted)
+    is_forward = {*case.entries} <= {*SCENE, *POINTS} and not evaluate(
+        case.numbers, FINAL_VELOCITIES[:4]
+    )[1]
+    if case.correlations and not (is_forward and case.ranges):
+        raise UserError(
+            "correlations are those of a complete scene; expected two values within limits",
+            case.place("correlations"),
+        )
+    return (_forward if is_forward else _reconstruct)(case, wanted)
 
 
 def _forward(case: Case, wanted: Sequence[str]) -> Answer:
@@ -181,9 +186,13 @@ def _forward(case: Case, wanted: Sequence[str]) -> Answer:
     if numbers.get("fit") == 0:
         raise UserError(UNUSABLE, case.source)
     results = {name: numbers[name] for name in names if name in numbers}
-    remarks = _left_out(case, names, results, lacking)
-    question = "velocities after the impact, from a complete scene"
-    answer = forward_answer(case, question, results, int(numbers["STATUS"]), remarks)
+    answer = forward_answer(
+        case,
+        "velocities after the impact, from a complete scene",
+        results,
+        int(numbers["STATUS"]),
+        _left_out(case, names, results, lacking),
+    )
     answer = replace(answer, scene={**case.numbers, **numbers})
     return _with_bounds(answer, results) if case.ranges else answer
 
@@ -232,12 +241,11 @@ def _with_bounds(answer: Answer, values: Mapping[str, float]) -> Answer:
 
     case = answer.case
     # random draws do not depend on the file's order; a TA that follows a course is a number
-    inputs = {
-        name: case.numbers.get(name) if math.isnan(amount.value) else amount
-        for name, amount in sorted(case.entries.items())
-    }
     sample = bounds(
-        inputs,
+        {
+            name: case.numbers.get(name) if math.isnan(amount.value) else amount
+            for name, amount in sorted(case.entries.items())
+        },
         [name for name in values if name in BOUNDED],
         samples=DRAWS,
         correlations=case.correlations,
@@ -346,19 +354,21 @@ def _reconstruct(case: Case, wanted: Sequence[str]) -> Answer:
 
     # random draws do not depend on the file's order
     try:
-        impacts = reconstruct(dict(sorted(case.entries.items())), samples=DRAWS)
+        impacts = reconstruct(dict(sorted(case.entries.items())))
     except (UserError, OverflowError) as error:  # a value is too large
         raise UserError(str(error), case.source) from None
     first, *alternatives = [_impact(case, impact, wanted) for impact in impacts]
-    refusals = tuple(
-        "another impact that agrees with the values, rejected: "
-        + answer.warnings[0].partition(": ")[2]
-        for answer in alternatives
-        if first.possible > answer.possible
-    )
     return replace(
         first,
-        sections={**first.sections, "rejected": refusals},
+        sections={
+            **first.sections,
+            "rejected": tuple(
+                "another impact that agrees with the values, rejected: "
+                + answer.warnings[0].partition(": ")[2]
+                for answer in alternatives
+                if first.possible > answer.possible
+            ),
+        },
         alternatives=tuple(answer for answer in alternatives if answer.possible),
     )
 
@@ -367,12 +377,12 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
     """Return one impact as an answer; of values that contradict one another without numbers."""
     from ..reconstruction import words
 
-    view, values = case.view, {**impact.values}
+    view, values = case.view, impact.values
     scene, warnings = case.numbers, words.warnings(impact, view)
     with suppress(UserError):  # an impact that leaves inputs open has no scene
         scene = impact.scene()
         more, _ = evaluate(scene, (*wanted, "STATUS"))
-        values = {name: float(x) for name, x in more.items() if not math.isnan(x)} | values
+        values = {**{n: float(x) for n, x in more.items() if not math.isnan(x)}, **values}
         if not impact.is_adverse:
             warnings += status.sentences(int(more["STATUS"]) & ~status.IMPOSSIBLE)
     is_exact = {*case.entries} - {*case.ranges}
