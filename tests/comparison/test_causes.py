@@ -11,7 +11,7 @@ from otherprograms import answers
 
 import impact88
 from impact88.comparison import constants, diagnosis
-from impact88.comparison.evaluation import Edit
+from impact88.comparison.evaluation import Edit, Program
 from impact88.comparison.kit import frozen_vectors
 from impact88.comparison.mutants import describe, models, sites
 from impact88.comparison.spellings import COLUMNS, NAMES, VELOCITIES
@@ -233,6 +233,15 @@ class TestMutants:
             for site in sites(name, "velocities")[::97]:
                 edit = site.edit(0)
                 assert len(edit.written) == len(edit.expected) > 0
+
+    @np.errstate(all="ignore")
+    def test_a_law_is_tried_as_it_is_written(self) -> None:
+        columns = {**{n: c[:40] for n, c in SCENE.items()}, "row": np.arange(40) + 1.0}
+        program = Program("impulses", columns)
+        for edit in models():
+            tried, written = edit.run(program), Program("impulses", columns, (edit,)).base
+            for name in VELOCITIES:
+                assert np.array_equal(tried[name], written[name], equal_nan=True), edit.says
 
     def test_models_edit_names_that_exist(self) -> None:
         from impact88.comparison.spellings import spelling

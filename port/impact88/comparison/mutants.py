@@ -26,6 +26,7 @@ RANK_TWIN = 3  # the same in several statements
 PATTERNS = {
     "a + b": "a; b; a - b; b - a; a * b",
     "a - b": "a; b; a + b; b - a; a * b",
+    "a - b * d": "b - a * d",
     "a * b + d * e": "a * e + d * b",
     "a * b - d * e": "a * e - d * b",
     "1 / a + 1 / b": "1 / (a + b)",
@@ -87,8 +88,8 @@ class Site(NamedTuple):
     expressions: tuple[str, ...]
     options: tuple[tuple[Option, ...], ...]
 
-    def values(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
-        """Return the statements' values, one alternative for each option (that is chosen)."""
+    def run(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
+        """Return a program's values, one alternative for each option (that is chosen)."""
         rows = self.options if chosen is None else [self.options[k] for k in chosen]
         values = {}
         for target, hole in zip(self.targets, self.holes, strict=True):
@@ -99,7 +100,7 @@ class Site(NamedTuple):
                 if slot in hole
             }
             values[target] = evaluate(hole, {**scope, **slots})
-        return values
+        return program.propagate(values)
 
     def edit(self, place: int) -> Edit:
         """Return an option as an edit."""
