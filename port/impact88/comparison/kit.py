@@ -79,12 +79,6 @@ def write_kit(folder: str) -> list[str]:
     return sorted(files)
 
 
-def check_kit(kit: str) -> None:
-    """Raise UserError unless a kit is the frozen set."""
-    if kit != FROZEN_ID:
-        raise UserError(f"{quoted(kit)} is not a kit; expected its id, {FROZEN_ID}")
-
-
 class Answers:
     """A table's answers in the order of the vectors.
 
@@ -92,6 +86,8 @@ class Answers:
     ----------
     columns : mapping of str to array_like
         The table's columns.
+    kit : str
+        The kit's id.
 
     Attributes
     ----------
@@ -101,7 +97,9 @@ class Answers:
         A reason for which vectors fail, and those; the first of a vector counts.
     """
 
-    def __init__(self, columns: Mapping[str, Any]) -> None:
+    def __init__(self, columns: Mapping[str, Any], kit: str) -> None:
+        if kit != FROZEN_ID:
+            raise UserError(f"{quoted(kit)} is not a kit; expected its id, {FROZEN_ID}")
         if absent := [name for name in ("id", *VELOCITIES) if name not in columns]:
             raise UserError(f"missing columns: {' '.join(absent)}; a kit's answers have them")
         vectors = frozen_vectors()

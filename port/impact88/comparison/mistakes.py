@@ -1,6 +1,6 @@
 """Find the mistakes behind the rows of a table that disagree."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from .diagnosis import MIN_HELD_OUT, REQUIRED, Candidate, Sample, explain
 from .evaluation import Floats, Program
 from .grading import Table
 from .numbers import spread
-from .rows import cut_digits, other_rows, single_precision
+from .rows import mistake_of_table
 from .spellings import COLUMNS, VELOCITIES
 from .types import Cause
 
@@ -30,28 +30,11 @@ def columns_of(table: Table, rows: Places) -> dict[str, Floats]:
 def find_causes(table: Table) -> tuple[Cause, ...]:
     """Return the mistakes behind the rows that disagree."""
     diagnosis = Diagnosis(table)
-    if says := _mistake_of_table(table, diagnosis.limits):
+    if says := mistake_of_table(table, diagnosis.limits):
         names = tuple(name for name, misfit in table.misfit.items() if misfit.any())
         total = int(table.wrong.sum())
         return (Cause(says, "", names, total, total),)
     return diagnosis.causes()
-
-
-def _mistake_of_table(table: Table, limits: Mapping[str, Floats]) -> str:
-    """Return what is wrong with a table whose program is right, "" if that is not so."""
-    if says := other_rows(table.ours, table.theirs, limits, table.wrong):
-        return says
-    names = [name for name, misfit in table.misfit.items() if misfit.any()]
-    pairs = [(table.ours[n], table.theirs[n], table.units[n], table.misfit[n]) for n in names]
-    if all(cut_digits(*pair) for pair in pairs):
-        return "the last digit is cut, not rounded"
-    bounds = table.reference.bounds
-    if all(
-        single_precision(*pair[:2], bounds[n], pair[2])
-        for n, pair in zip(names, pairs, strict=True)
-    ):
-        return "results are computed or written in single precision (float32)"
-    return ""
 
 
 def mistake_limit(table: Table, name: str) -> Floats:
