@@ -179,6 +179,19 @@ class TestNoCause:
         note = "one row alone disagrees: no cause is named"
         assert (note in comparison.notes) == (count == 1)
 
+    @long
+    def test_two_edits_do_not_explain_six_rows(self) -> None:
+        edit = ("if slide(start) > 0.0", "if slide(base) > 0.0")
+        comparison = impact88.compare(table_of("si", edit))
+        assert comparison.differing == 6
+        assert comparison.causes == ()
+
+    def test_a_table_of_critical_coefficients_alone_has_none(self) -> None:
+        coefficients = impact88.solve(SCENE, "MUC")["MUC"]
+        comparison = impact88.compare({**SCENE, "MUC": 2 * coefficients})
+        assert comparison.differing
+        assert comparison.causes == ()
+
     def test_too_few_digits_tell_no_cause(self) -> None:
         table = {name: column[:1] for name, column in right_table(("VAX",)).items()}
         table["VAX"] = np.array([f"{table['VAX'][0] + 1.0:.1f}"])

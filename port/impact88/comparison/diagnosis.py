@@ -206,16 +206,19 @@ def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
 def explain(sample: Sample, held_out: Sample, part: str) -> Candidate | None:
     """Return the likeliest program that gives the rows, and those kept out of the search.
 
-    None where the rows that disagree hold too little information.
+    None where the rows that disagree hold too little information. Two edits give a few rows by
+    chance: they are looked for only where some that disagree are kept out.
     """
     if information(sample) < MIN_BITS:
         return None
-    causes = (_confirm(stage, sample, held_out) for stage in _stages(sample, part))
+    are_kept_out = sample.columns["row"][0] != held_out.columns["row"][0]  # that disagree are first
+    stages = _stages(sample, part, MAX_BASES if are_kept_out else 0)
+    causes = (_confirm(stage, sample, held_out) for stage in stages)
     return next((cause for cause in causes if cause is not None), None)
 
 
-def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
-    """Yield candidates: one edit, one under a condition, a constant, two edits."""
+def _stages(sample: Sample, part: str, bases: int) -> Iterator[list[Candidate]]:
+    """Yield candidates: one edit, one under a condition, a constant, two on ``bases`` of one."""
     names = NAMES if part == "velocities" else NAMES[:1]
     singles = search(sample, part, names)
     yield singles
@@ -229,7 +232,7 @@ def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
     harmless = [
         c for c in singles if (c.rows & ~sample.wrong).sum() >= REQUIRED * (~sample.wrong).sum()
     ]
-    for base in _distinct(harmless)[:MAX_BASES]:
+    for base in _distinct(harmless)[:bases]:
         pairs = search(sample, part, (base.name,), base.edits)
         yield [*pairs, *_conditional(pairs[:10], sample)]
 
