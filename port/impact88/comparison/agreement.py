@@ -184,6 +184,6 @@ def _elimination_effects(scene: Mapping[str, Floats], names: Sequence[str]) -> d
     sizes = np.array([speed, speed, speed, speed, *spins])
     bounds = ((np.abs(inverse) @ terms)[..., 0].T + disparity * sizes) * ELIMINATION_STEPS * EPSILON
     bounds[:, ~good] = np.nan
-    program = Program("impulses", _finite(scene))
+    program = Program("impulses", _finite(scene), wanted=names)
     moves = ({n: program.base[n] + b} for n, b in zip(VELOCITIES, bounds, strict=True))
     return program.effects(moves, names)

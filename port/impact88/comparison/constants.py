@@ -188,20 +188,23 @@ def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) 
 
 
 def _common_constant(values: Floats, form: Form) -> float:
-    """Return the constant that half of the rows agree on, with the fewest digits; else NaN."""
+    """Return the constant that half of the rows agree on, with the fewest digits; else NaN.
+
+    Where rounded results leave it open, those between the quartiles agree.
+    """
     values = np.sort(values[np.isfinite(values)])
     if values.size < MIN_ROWS:
         return np.nan
     half = values.size // 2
     start = int(np.argmin(values[half:] - values[: values.size - half]))
-    low, middle, high = (float(values[start + k]) for k in (0, half // 2, half))
-    spread = high - low
-    if spread > MAX_SPREAD * abs(middle) or abs(middle - form.neutral) < EXACT_SPREAD:
+    middle = float(values[start + half // 2])
+    if abs(middle - form.neutral) < EXACT_SPREAD:
         return np.nan
-    if spread > EXACT_SPREAD * abs(middle):
-        return roundest(low, high)
-    short = float(f"{middle:.9g}")
-    return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
+    if values[start + half] - values[start] <= EXACT_SPREAD * abs(middle):
+        short = float(f"{middle:.9g}")
+        return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
+    low, high = (float(q) for q in np.quantile(values, (0.25, 0.75)))
+    return roundest(low, high) if high - low <= MAX_SPREAD * abs(middle) else np.nan
 
 
 def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:

@@ -183,8 +183,7 @@ def _conditional(candidates: Sequence[Candidate], sample: Sample) -> list[Candid
     """Return candidates with the condition under which they hold, where one is found."""
     quantities = quantities_of(sample.columns)
     conditional = []
-    likeliest = sorted(candidates, key=lambda c: -int((c.rows & sample.wrong).sum()))
-    for candidate in _distinct(likeliest)[:MAX_CONDITIONAL]:
+    for candidate in _distinct(candidates)[:MAX_CONDITIONAL]:
         inside, outside = candidate.rows & sample.wrong, ~candidate.rows
         condition = find_condition(quantities, inside, outside & ~sample.wrong)
         if condition is not None:
