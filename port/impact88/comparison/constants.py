@@ -53,6 +53,7 @@ KNOWN = {
     "weight for mass, in m and s": 9.80665,
     "degrees for radians": 180 / pi,
     "revolutions per minute for radians per second": 30 / pi,
+    "revolutions per second for radians per second": 1 / (2 * pi),
     "inches for feet": 12.0,
     "square inches for square feet": 144.0,
 }
