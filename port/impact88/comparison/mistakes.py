@@ -71,8 +71,10 @@ class Diagnosis:
         results = [n for n in self.names if n not in self.velocities]
         if candidate is None:
             return self._causes_of_results(results)
-        _, held_out = self._samples(self.names)
-        given = [*judged, *self._given(candidate, held_out, results)]
+        given = [*judged]
+        for name in results:
+            _, held_out = self._samples([*judged, name])
+            given += self._given(candidate, held_out, [name])
         others = self._causes_of_results([n for n in self.names if n not in given])
         return (self._cause(candidate, judged, given), *others)
 
