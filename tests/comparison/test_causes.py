@@ -11,7 +11,7 @@ from otherprograms import answers
 
 import impact88
 from impact88.comparison import constants, diagnosis
-from impact88.comparison.evaluation import Edit
+from impact88.comparison.evaluation import Edit, Program
 from impact88.comparison.kit import frozen_vectors
 from impact88.comparison.mutants import describe, models, sites
 from impact88.comparison.spellings import COLUMNS, NAMES, VELOCITIES
@@ -179,6 +179,19 @@ class TestNoCause:
         note = "one row alone disagrees: no cause is named"
         assert (note in comparison.notes) == (count == 1)
 
+    @long
+    def test_two_edits_do_not_explain_six_rows(self) -> None:
+        edit = ("if slide(start) > 0.0", "if slide(base) > 0.0")
+        comparison = impact88.compare(table_of("si", edit))
+        assert comparison.differing == 6
+        assert comparison.causes == ()
+
+    def test_a_table_of_critical_coefficients_alone_has_none(self) -> None:
+        coefficients = impact88.solve(SCENE, "MUC")["MUC"]
+        comparison = impact88.compare({**SCENE, "MUC": 2 * coefficients})
+        assert comparison.differing
+        assert comparison.causes == ()
+
     def test_too_few_digits_tell_no_cause(self) -> None:
         table = {name: column[:1] for name, column in right_table(("VAX",)).items()}
         table["VAX"] = np.array([f"{table['VAX'][0] + 1.0:.1f}"])
@@ -233,6 +246,15 @@ class TestMutants:
             for site in sites(name, "velocities")[::97]:
                 edit = site.edit(0)
                 assert len(edit.written) == len(edit.expected) > 0
+
+    @np.errstate(all="ignore")
+    def test_a_law_is_tried_as_it_is_written(self) -> None:
+        columns = {**{n: c[:40] for n, c in SCENE.items()}, "row": np.arange(40) + 1.0}
+        program = Program("impulses", columns)
+        for edit in models():
+            tried, written = edit.run(program), Program("impulses", columns, (edit,)).base
+            for name in VELOCITIES:
+                assert np.array_equal(tried[name], written[name], equal_nan=True), edit.says
 
     def test_models_edit_names_that_exist(self) -> None:
         from impact88.comparison.spellings import spelling

@@ -1,9 +1,9 @@
 """impact88 selfcheck                              check this installation: pass or fail
 impact88 selfcheck --json -o qualification.json
 
-Replays what a real Apple II Plus did (the ROM's arithmetic, runs of the listing, programs, the
-published runs) through port, replay and emulator, compares every result of solve with 30 digits,
-and prints counts, hashes and versions: the record of an installation.
+Replays what a real Apple II Plus did (the ROM's arithmetic, runs of the listing, programs) through
+port, replay and emulator, compares every result of solve with 30 digits, and prints counts, hashes
+and versions: the record of an installation.
 
 exit status: 0 everything is as captured; 1 something is not; 2 bad input"""
 

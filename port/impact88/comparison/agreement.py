@@ -8,7 +8,7 @@ rounding of a program that loses digits: it is reported, and no mistake is looke
 elimination may lose in a scene is bounded by Skeel's condition number of its equations.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -63,10 +63,16 @@ class Reference:
     optional: Bools
 
 
-def strips(size: int) -> Iterator[slice]:
-    """Yield slices of scenes that are computed together."""
-    for start in range(0, max(size, 1), STRIP):
-        yield slice(start, start + STRIP)
+def by_strips(
+    function: Callable[[Mapping[str, Floats], Sequence[str]], dict[str, Any]],
+    scene: Mapping[str, Floats],
+    names: Sequence[str],
+) -> dict[str, Any]:
+    """Return the columns that a function of scenes and names has, computed a strip at a time."""
+    starts = range(0, max(len(scene["UX"]), 1), STRIP)
+    strips = [{name: scene[name][start : start + STRIP] for name in COLUMNS} for start in starts]
+    parts = [function(strip, names) for strip in strips]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 @np.errstate(all="ignore")
@@ -87,14 +93,8 @@ def reference(scene: Mapping[str, Floats], names: Sequence[str] = COMPARED) -> R
     """
     sizes = ("KI", "KF", "LOSS", "PN", "PT", "PM", "MUC")
     values = solve(scene, [*dict.fromkeys([*names, *VELOCITIES, *sizes]), "STATUS"])
-    size = len(scene["UX"])
-    bounds = {name: np.empty(size) for name in (*names, "slide")}
-    sliding = np.empty(size)
-    for part in strips(size):
-        effects, sliding[part] = _rounding_effects({n: scene[n][part] for n in COLUMNS}, names)
-        for name, bound in effects.items():
-            bounds[name][part] = bound
-    ties = np.abs(sliding) <= bounds.pop("slide")
+    bounds = by_strips(_rounding_effects, scene, names)
+    ties = bounds.pop("ties")
     reversed_friction = {**scene, "MU": np.where(scene["MU"] == -10.0, scene["MU"], -scene["MU"])}
     status = values.pop("STATUS").astype(int)
     return Reference(
@@ -113,10 +113,8 @@ def _finite(scene: Mapping[str, Floats]) -> dict[str, Floats]:
     return {n: np.minimum(c, LARGEST_BODY) if n in bodies else c for n, c in scene.items()}
 
 
-def _rounding_effects(
-    scene: Mapping[str, Floats], names: Sequence[str]
-) -> tuple[dict[str, Floats], Floats]:
-    """Return the bounds of results and of the sliding velocity "slide", and that velocity."""
+def _rounding_effects(scene: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Any]:
+    """Return the bounds of results, and the "ties" that rounding of the sliding velocity makes."""
     impulses = {name: impulse for name, impulse in IMPULSES.items() if name in names}
     outputs = (*names, "slide", *impulses.values())
     program = Program("impulses", _finite(scene), wanted=outputs)
@@ -127,8 +125,8 @@ def _rounding_effects(
     sums = program.effects(({target: value} for target, value in moves.items()), outputs)
     for name, impulse in impulses.items():  # a program may have it from either
         sums[name] = np.fmax(sums[name], sums.pop(impulse))
-    factor = SAFETY * EPSILON / STEP
-    return {name: total * factor for name, total in sums.items()}, base["slide"]
+    bounds: dict[str, Any] = {n: total * SAFETY * EPSILON / STEP for n, total in sums.items()}
+    return {**bounds, "ties": np.abs(base["slide"]) <= bounds.pop("slide")}
 
 
 def _scales(scene: Mapping[str, Floats], values: Mapping[str, Floats]) -> dict[str, Floats]:
@@ -162,49 +160,30 @@ def elimination_bounds(scene: Mapping[str, Floats], names: Sequence[str]) -> dic
     Where one body is far heavier, elimination in a bad order loses as many digits more as their
     masses or inertias differ by.
     """
-    size = len(scene["UX"])
-    bounds = np.full((size, 6), np.nan)
-    for part in strips(size):
-        columns = {n: scene[n][part] for n in COLUMNS}
-        program = Program("equations", columns, wanted=VELOCITIES)
-        matrix, right = (array[0] for array in program.system())
-        solution = np.array([program.base[name] for name in VELOCITIES]).T
-        good = np.isfinite(matrix.sum((-2, -1))) & np.isfinite(solution).all(-1)
-        inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
-        terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
-        bound = (np.abs(inverse) @ terms)[..., 0]
-        point = columns["M"] == 4.0
-        speed = np.abs(solution[:, :4]).max(1)
-        spin = np.abs(solution[:, 4:]).max(1)
-        # a spin is found beside the angular momentum of the mass centres
-        spins = [
-            np.fmax(
-                spin, np.where(point, 0.0, columns[m] * np.abs(columns[d]) * speed / columns[i])
-            )
-            for m, d, i in (("MA", "DA", "IA"), ("MB", "DB", "IB"))
-        ]
-        sizes = np.array([speed, speed, speed, speed, *spins]).T
-        bound += _disparity(columns)[:, None] * sizes
-        bounds[part] = np.where(good[:, None], bound, np.nan)
-    limits = dict(zip(VELOCITIES, (ELIMINATION_STEPS * EPSILON * bounds).T, strict=True))
-    return {name: limits[name] for name in names if name in limits} | _follow(
-        scene, limits, [name for name in names if name not in limits]
-    )
+    return by_strips(_elimination_effects, scene, names)
 
 
-def _disparity(scene: Mapping[str, Floats]) -> Floats:
-    """Return the ratio of the masses or of the inertias, the larger to the smaller."""
-    masses, inertias = (
-        np.fmax(scene[a] / scene[b], scene[b] / scene[a]) for a, b in (("MA", "MB"), ("IA", "IB"))
-    )
-    return np.fmax(masses, np.where(scene["M"] == 4.0, 0.0, inertias))
-
-
-def _follow(
-    scene: Mapping[str, Floats], bounds: Mapping[str, Floats], names: Sequence[str]
-) -> dict[str, Floats]:
-    """Return what changes of the velocities change in the results that follow from them."""
-    program = Program("impulses", _finite(scene))
-    velocities = {name: program.base[name] for name in VELOCITIES}
-    program = Program("impulses", _finite(scene), (), velocities)
-    return program.effects(({n: x + bounds[n]} for n, x in velocities.items()), names)
+def _elimination_effects(scene: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Floats]:
+    """Return what elimination may change in velocities, and by them in other results."""
+    program = Program("equations", scene, wanted=VELOCITIES)
+    base = program.base
+    matrix, right = (array[0] for array in program.system())
+    solution = np.array([base[name] for name in VELOCITIES]).T
+    good = np.isfinite(matrix.sum((-2, -1))) & np.isfinite(solution).all(-1)
+    inverse = np.linalg.inv(np.where(good[:, None, None], matrix, np.eye(6)))
+    terms = np.abs(matrix) @ np.abs(solution)[..., None] + np.abs(right)[..., None]
+    ratios = [base["MA"] / base["MB"], base["ia"] / base["ib"]]
+    disparity = np.max([*ratios, *(1 / ratio for ratio in ratios)], 0)
+    speed = np.abs(solution[:, :4]).max(1)
+    spin = np.abs(solution[:, 4:]).max(1)
+    # a spin is found beside the angular momentum of the mass centres
+    spins = [
+        np.fmax(spin, base[mass] * np.abs(base[arm]) * speed / base[inertia])
+        for mass, arm, inertia in (("MA", "da", "ia"), ("MB", "db", "ib"))
+    ]
+    sizes = np.array([speed, speed, speed, speed, *spins])
+    bounds = ((np.abs(inverse) @ terms)[..., 0].T + disparity * sizes) * ELIMINATION_STEPS * EPSILON
+    bounds[:, ~good] = np.nan
+    program = Program("impulses", _finite(scene), wanted=names)
+    moves = ({n: program.base[n] + b} for n, b in zip(VELOCITIES, bounds, strict=True))
+    return program.effects(moves, names)

@@ -11,15 +11,14 @@ from ..cases.units import View
 from ..errors import UserError
 from ..names import SCENE
 from ..tables.solving import read_headings
-from .agreement import COMPARED, Bools
+from .agreement import COMPARED
 from .conditions import find_condition, quantities_of
-from .evaluation import Floats
 from .grading import Table
-from .kit import HEAD, REMARKS, Answers, check_kit
+from .kit import HEAD, REMARKS, Answers
 from .mistakes import MAX_SAMPLE, columns_of, find_causes
 from .numbers import spread
 from .reading import read_table, scene_columns
-from .types import Comparison, Disagreement
+from .types import Cause, Comparison, Disagreement
 
 MAX_ROWS_LISTED = 1000
 
@@ -86,55 +85,47 @@ def compare(
     for name in case.numbers:
         if name in (SCENE if kit else columns) and (name != "M" or "M" in case.written):
             raise UserError(f"{name} is set, and in the table or kit, too; expected one of the two")
-    if kit is not None:
-        check_kit(kit)
-        answers = Answers(columns)
-        comparison, wrong = compare_columns(answers.scene, answers.results, factors, causes)
-        verdict = answers.verdict(wrong)
-        passed = not (verdict["failed"] or verdict["stray"])
-        comparison = replace(comparison, passed=passed, kit=verdict)
-    elif not any(name in columns for name in COMPARED):
+    answers = None if kit is None else Answers(columns, kit)
+    if not (answers or any(name in columns for name in COMPARED)):
         raise UserError(
             f"no results to compare, only {' '.join(others) or 'the scene'}; expected headings "
             f"such as {' '.join(COMPARED)}"
         )
-    else:
-        scene = scene_columns(columns, factors, case.numbers)
-        comparison, _ = compare_columns(scene, columns, factors, causes)
+    scene = answers.scene if answers else scene_columns(columns, factors, case.numbers)
+    table = Table(scene, answers.results if answers else columns, factors)
+    comparison = _comparison(table, causes)
+    if answers:
+        verdict = answers.verdict(table.wrong)
+        passed = not (verdict["failed"] or verdict["stray"])
+        comparison = replace(comparison, passed=passed, kit=verdict)
     if others:
         note = f"columns not compared: {' '.join(others)}"
         comparison = replace(comparison, notes=(*comparison.notes, note))
     return comparison
 
 
-def compare_columns(
-    scene: Mapping[str, Floats],
-    columns: Mapping[str, Any],
-    factors: Mapping[str, float],
-    causes: bool = True,
-) -> tuple[Comparison, Bools]:
-    """Return the comparison of columns of results with their scenes, and the rows that disagree."""
-    table = Table(scene, columns, factors)
+def _comparison(table: Table, causes: bool) -> Comparison:
+    """Return the comparison of a table, with the causes where they are wanted."""
     places = np.flatnonzero(table.wrong)
-    complete = table.agreeing.any() and not (places.size or table.missing.any() or table.empty)
-    comparison = Comparison(
-        passed=bool(complete),
+    is_complete = table.agreeing.any() and not (places.size or table.missing.any() or table.empty)
+    is_lone = places.size == 1 and table.agreeing.any()  # one row fits some edit by chance
+    notes = table.notes()
+    cause_list: tuple[Cause, ...] = ()
+    if causes and places.size:
+        cause_list = () if is_lone else find_causes(table)
+        note = "one row alone disagrees: no cause is named" if is_lone else "no cause was found"
+        notes += () if cause_list else (note,)
+    return Comparison(
+        passed=bool(is_complete),
         rows=table.size,
         agreeing=int(table.agreeing.sum()),
         differing=int(places.size),
         results=tuple(name for name in table.names if name not in table.empty),
-        notes=table.notes(),
+        causes=cause_list,
+        disagreements=_disagreements(table, bool(cause_list)),
+        notes=notes,
         differing_rows=tuple((places[:MAX_ROWS_LISTED] + 1).tolist()),
     )
-    if not places.size:
-        return comparison, table.wrong
-    is_lone = places.size == 1 and table.agreeing.any()  # one row fits some edit by chance
-    cause_list = find_causes(table) if causes and not is_lone else ()
-    disagreements = _disagreements(table, bool(cause_list))
-    if causes and not cause_list:
-        note = "one row alone disagrees: no cause is named" if is_lone else "no cause was found"
-        comparison = replace(comparison, notes=(*comparison.notes, note))
-    return replace(comparison, causes=cause_list, disagreements=disagreements), table.wrong
 
 
 def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
@@ -144,20 +135,16 @@ def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
     )
     quantities = {} if explained else quantities_of(columns_of(table, rows))
     disagreements = []
-    for name, misfit in table.misfit.items():
-        if not misfit.any():
-            continue
+    for name in [name for name, misfit in table.misfit.items() if misfit.any()]:
+        misfit = table.misfit[name]
         relative = table.relative_difference(name)
         worst = int(relative.argmax())
-        condition = (
-            find_condition(quantities, misfit[rows], ~table.wrong[rows]) if quantities else None
-        )
-        pairs = np.isfinite(table.theirs[name]) & np.isfinite(table.ours[name])
+        condition = quantities and find_condition(quantities, misfit[rows], ~table.wrong[rows])
         disagreements.append(
             Disagreement(
                 name,
                 int(misfit.sum()),
-                int(pairs.sum()),
+                int(np.isfinite(table.difference[name]).sum()),
                 worst + 1,
                 str(table.columns[name][worst]).strip(),
                 float(table.ours[name][worst] / table.factors[name]),

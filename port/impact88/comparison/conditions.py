@@ -28,7 +28,6 @@ QUANTITIES = {
     "the number of the row": "row",
 }
 """Further quantities of a condition, in names of ``spellings/impulses.py``."""
-SPECIAL_VALUES = {"MU": (-10.0,), "M": (4.0,)}
 RELATIONS: dict[str, Any] = {
     "above": np.greater,
     "below": np.less,
@@ -55,6 +54,14 @@ class Condition(NamedTuple):
         return f"where {self.quantity} is {self.relation} {self.value:.6g}"
 
 
+SPECIAL_CONDITIONS = (
+    Condition("MU", "equal to", -10.0),
+    Condition("MU", "not", -10.0),
+    Condition("M", "equal to", 4.0),
+    Condition("M", "not", 4.0),
+)
+
+
 def quantities_of(columns: Mapping[str, Floats]) -> dict[str, Floats]:
     """Return what a condition may be about, by name."""
     program = Program("impulses", columns)
@@ -68,37 +75,26 @@ def find_condition(
     quantities: Mapping[str, Floats], inside: Bools, outside: Bools
 ) -> Condition | None:
     """Return the condition that separates the rows ``inside`` from those ``outside``."""
-    if inside.sum() < MIN_ROWS or outside.sum() < MIN_ROWS:
+    fewest = min(inside.sum(), outside.sum())
+    if fewest < MIN_ROWS:
         return None
-    best: tuple[float, int, Condition] | None = None
-    for place, (name, column) in enumerate(quantities.items()):
-        use = (inside | outside) & np.isfinite(column)
-        options = [(r, v) for v in SPECIAL_VALUES.get(name, ()) for r in ("equal to", "not")]
-        options += _cuts(column[use], inside[use])
-        for relation, value in options:
-            condition = Condition(name, relation, value)
-            errors = (condition.rows(quantities) != inside) & (inside | outside)
-            share = float(errors.sum() / min(inside.sum(), outside.sum()))
-            key = share, place - 100 * (relation in ("equal to", "not"))
-            if share <= MAX_ERRORS and (best is None or key < best[:2]):
-                best = *key, condition
-    return best[2] if best else None
+    rows = inside | outside
+    conditions = list(SPECIAL_CONDITIONS)
+    for name, column in quantities.items():
+        conditions += _cuts(name, column[rows], inside[rows])
+    errors = [int((c.rows(quantities) != inside)[rows].sum()) for c in conditions]
+    best = int(np.argmin(errors))
+    return conditions[best] if errors[best] <= MAX_ERRORS * fewest else None
 
 
-def _cuts(column: Floats, inside: Bools) -> list[tuple[str, float]]:
-    """Return the best cut above and the best one below."""
-    order = np.argsort(column, kind="stable")
-    values, counts = column[order], np.cumsum(inside[order])
-    cuts = np.flatnonzero(np.diff(values))
-    if not cuts.size:
+def _cuts(name: str, column: Floats, inside: Bools) -> list[Condition]:
+    """Return the best conditions above and below a value."""
+    values = np.unique(column[np.isfinite(column)])
+    if values.size < 2:
         return []
-    rows_below, inside_below = cuts + 1, counts[cuts]
-    wrong_above = inside_below + (order.size - rows_below) - (counts[-1] - inside_below)
-    options = []
-    for relation, wrong in (("above", wrong_above), ("below", order.size - wrong_above)):
-        cut = cuts[int(np.argmin(wrong))]
-        options.append((relation, roundest(values[cut], values[cut + 1])))
-    return options
+    errors = ((column > values[:-1, None]) != inside).sum(1)
+    cuts = {"above": errors.argmin(), "below": errors.argmax()}
+    return [Condition(name, r, roundest(values[k], values[k + 1])) for r, k in cuts.items()]
 
 
 def roundest(low: float, high: float) -> float:

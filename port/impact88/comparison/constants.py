@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .conditions import roundest
-from .evaluation import Alternatives, Edit, Floats, Program, evaluate
+from .evaluation import FITTED, Alternatives, Edit, Floats, Program, evaluate
 from .mutants import sites, slot_name
 from .numbers import spread
 from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
@@ -41,6 +41,8 @@ KNOWN = {
     "32.2 for 32.174": 32.2 / 32.174,
     "9.81 for 9.80665": 9.81 / 9.80665,
     "ft/s for mph": 22 / 15,
+    "ft/s for km/h": 1000 / 3600 / 0.3048,
+    "ft/s for knots": 1852 / 3600 / 0.3048,
     "m/s for ft/s": 0.3048,
     "km/h for m/s": 3.6,
     "mph for m/s": 0.44704,
@@ -51,6 +53,7 @@ KNOWN = {
     "weight for mass, in m and s": 9.80665,
     "degrees for radians": 180 / pi,
     "revolutions per minute for radians per second": 30 / pi,
+    "revolutions per second for radians per second": 1 / (2 * pi),
     "inches for feet": 12.0,
     "square inches for square feet": 144.0,
 }
@@ -71,7 +74,7 @@ class Form(NamedTuple):
 
 FACTOR = Form("({0}) * {1}", 1.0, "multiplied by {}")
 TERM = Form("({0}) + {1}", 0.0, "increased by {}")
-CONSTANT = Form("{1} + 0 * ({0})", 0.5, "always {}")
+CONSTANT = Form("{1}", 0.5, "always {}")
 LIMIT = Form(
     "where({0} == -10, {0}, maximum(minimum({0}, {1}), -{1}))",
     0.01,
@@ -84,8 +87,7 @@ LIMITED = ("E", "MU", "EM")
 @np.errstate(all="ignore")
 def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
     """Return the edits of a part of a spelling by one constant that the rows agree on."""
-    wrong = np.flatnonzero(sample.wrong)
-    subset = sample.rows(spread(wrong, ROWS))
+    subset = sample.rows(spread(np.flatnonzero(sample.wrong), ROWS))
     program = subset.program(name)
     edits = _statement_constants(subset, program, part)
     return edits + _column_constants(subset, program) if name == NAMES[0] else edits
@@ -99,9 +101,8 @@ def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
         groups = [group.split(",") for group in GROUPS[side].split()]
         groups = [g for g in groups if set(g) <= set(names)] + [[name] for name in names]
         for group in groups:
-            forms = [FACTOR, *[TERM] * (len(group) == 1), *[LIMIT] * (group[0] in LIMITED)]
-            for form in forms:
-                changes = {f"{side} {n}": [form.text.format(n, "k")] for n in group}
+            for form in [FACTOR, *[TERM] * (len(group) == 1), *[LIMIT] * (group[0] in LIMITED)]:
+                changes = {f"{side} {n}": [form.text.format(n, FITTED)] for n in group}
                 constants = _fit(sample, program, changes, form)
                 constants += [_known_factor(sample, program, changes)] if form is FACTOR else []
                 for constant in filter(np.isfinite, constants):
@@ -138,14 +139,14 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     for target, expressions in places.items():
         for form in (FACTOR, TERM, CONSTANT):
             texts = [
-                hole.replace(slot_name(0), f"({form.text.format(expression, 'k')})")
+                hole.replace(slot_name(0), f"({form.text.format(expression, FITTED)})")
                 for hole, expression in expressions.items()
             ]
             constants = _fit(sample, program, {target: texts}, form)
             for (hole, expression), constant in zip(expressions.items(), constants, strict=True):
                 if np.isfinite(constant):
                     number, meaning = _digits_and_meaning(constant, form)
-                    new_text = number if form is CONSTANT else form.text.format(expression, number)
+                    new_text = form.text.format(expression, number)
                     changes = {target: hole.replace(slot_name(0), f"({new_text})")}
                     rank = RANK_KNOWN if meaning else RANK
                     new_text = ast.unparse(parse(new_text)) + meaning
@@ -188,18 +189,23 @@ def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) 
 
 
 def _common_constant(values: Floats, form: Form) -> float:
-    """Return the constant that rows agree on, with the fewest digits; NaN if they do not."""
-    values = values[np.isfinite(values)]
+    """Return the constant that half of the rows agree on, with the fewest digits; else NaN.
+
+    Where rounded results leave it open, those between the quartiles agree.
+    """
+    values = np.sort(values[np.isfinite(values)])
     if values.size < MIN_ROWS:
         return np.nan
-    low, middle, high = (float(q) for q in np.quantile(values, (0.25, 0.5, 0.75)))
-    spread = high - low
-    if spread > MAX_SPREAD * abs(middle) or abs(middle - form.neutral) < EXACT_SPREAD:
+    half = values.size // 2
+    start = int(np.argmin(values[half:] - values[: values.size - half]))
+    middle = float(values[start + half // 2])
+    if abs(middle - form.neutral) < EXACT_SPREAD:
         return np.nan
-    if spread > EXACT_SPREAD * abs(middle):
-        return roundest(low, high)
-    short = float(f"{middle:.9g}")
-    return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
+    if values[start + half] - values[start] <= EXACT_SPREAD * abs(middle):
+        short = float(f"{middle:.9g}")
+        return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
+    low, high = (float(q) for q in np.quantile(values, (0.25, 0.75)))
+    return roundest(low, high) if high - low <= MAX_SPREAD * abs(middle) else np.nan
 
 
 def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:

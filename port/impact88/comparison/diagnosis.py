@@ -128,23 +128,24 @@ def information(sample: Sample) -> float:
     return bits
 
 
-def _model_edits(name: str, part: str) -> Iterator[Edit]:
-    """Yield the laws and conventions for a part; laws are written in the first spelling."""
-    for edit in models():
-        shown = {key[2:] for key in edit.changes if key[0] == ">"}
-        is_law = any(key[0] not in "<>" for key in edit.changes)
-        is_late = bool(shown) and shown.isdisjoint(VELOCITIES)
-        if (part == "results") == is_late and (name == NAMES[0] or not is_law):
-            yield edit
+def _trials(name: str, part: str, is_second: bool) -> Iterator[Site | Edit]:
+    """Yield what is tried in a part of a spelling: sites, then laws and conventions.
 
-
-def _sites(name: str, part: str, with_reading: bool) -> Iterator[Site]:
-    """Yield the sites of a spelling; those of the reading where asked for."""
+    Mistakes of the reading are tried in some spellings only, laws in the one that they are written
+    in, and as a second edit only those that have a name.
+    """
     text = spelling(name)
     reading = {statement.target for statement in text.statements[: text.own]}
     for site in sites(name, part):
-        if with_reading or reading.isdisjoint(site.targets):
+        if is_second or name in WITH_READING or reading.isdisjoint(site.targets):
             yield site
+    for edit in models() if is_second or name == NAMES[0] else ():
+        shown = {key[2:] for key in edit.changes if key[0] == ">"}
+        is_law = any(key[0] not in "<>" for key in edit.changes)
+        is_late = bool(shown) and shown.isdisjoint(VELOCITIES)
+        is_usual = edit.rank == RANK_MODEL or not is_second
+        if (part == "results") == is_late and is_usual and (name == NAMES[0] or not is_law):
+            yield edit
 
 
 @np.errstate(all="ignore")
@@ -156,37 +157,25 @@ def search(
     ``part``: "velocities" or "results", whose statements are edited. With a sample whose columns
     hold final velocities the results follow from those.
     """
-    wrong = np.flatnonzero(sample.wrong)
-    places = spread(wrong, SCREEN_ROWS)
-    screen = sample.rows(places)
+    screen = sample.rows(spread(np.flatnonzero(sample.wrong), SCREEN_ROWS))
+    need = min(MIN_SCREENED, screen.wrong.size)
     candidates: list[Candidate] = []
     targets = {key for edit in base for key in edit.changes}
     for name in names:
         wanted = tuple(sample.theirs) if part == "velocities" else ()
         small, full = (s.program(name, base, wanted) for s in (screen, sample))
-        need = min(MIN_SCREENED, places.size)
-        for site in _sites(name, part, name in WITH_READING or bool(base)):
-            if targets.isdisjoint(site.targets):
-                counts = screen.fits(small.propagate(site.values(small)), len(site.options)).sum(1)
+        plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
+        for trial in _trials(name, part, bool(base)):
+            if targets.isdisjoint(trial.targets):
+                counts = screen.fits(trial.run(small), len(trial.options)).sum(1)
                 options = np.flatnonzero(counts >= need).tolist()
-                values = full.propagate(site.values(full, options)) if options else {}
+                values = trial.run(full, options) if options else {}
                 fits = sample.fits(values, len(options)) if options else ()
                 candidates += [
-                    Candidate(name, (*base, site.edit(k)), rows)
+                    Candidate(name, (*base, trial.edit(k)), rows)
                     for k, rows in zip(options, fits, strict=True)
+                    if (rows != plain).any()
                 ]
-        if name == NAMES[0] or base:
-            small, full = screen.program(name, base), sample.program(name, base)
-            for edit in _model_edits(name, part):
-                if base and edit.rank > RANK_MODEL:
-                    continue
-                if targets.isdisjoint(edit.changes):
-                    changes = {key: [text] for key, text in edit.changes.items()}
-                    if screen.fits(small.run(changes)).sum() >= need:
-                        rows = sample.fits(full.run(changes))[0]
-                        candidates.append(Candidate(name, (*base, edit), rows))
-    plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
-    candidates = [c for c in candidates if (c.rows != plain).any()]
     return sorted(candidates, key=lambda c: (-score(c.rows, sample), c.rank))
 
 
@@ -213,14 +202,22 @@ def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
     return list(best.values())
 
 
-def explain(sample: Sample, held_out: Sample, part: str = "velocities") -> Candidate | None:
-    """Return the likeliest program that gives the rows, and those kept out of the search."""
-    causes = (_confirm(stage, sample, held_out) for stage in _stages(sample, part))
+def explain(sample: Sample, held_out: Sample, part: str) -> Candidate | None:
+    """Return the likeliest program that gives the rows, and those kept out of the search.
+
+    None where the rows that disagree hold too little information. Two edits give a few rows by
+    chance: they are looked for only where some that disagree are kept out.
+    """
+    if information(sample) < MIN_BITS:
+        return None
+    are_kept_out = sample.columns["row"][0] != held_out.columns["row"][0]  # that disagree are first
+    stages = _stages(sample, part, MAX_BASES if are_kept_out else 0)
+    causes = (_confirm(stage, sample, held_out) for stage in stages)
     return next((cause for cause in causes if cause is not None), None)
 
 
-def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
-    """Yield candidates: one edit, one under a condition, a constant, two edits."""
+def _stages(sample: Sample, part: str, bases: int) -> Iterator[list[Candidate]]:
+    """Yield candidates: one edit, one under a condition, a constant, two on ``bases`` of one."""
     names = NAMES if part == "velocities" else NAMES[:1]
     singles = search(sample, part, names)
     yield singles
@@ -234,7 +231,7 @@ def _stages(sample: Sample, part: str) -> Iterator[list[Candidate]]:
     harmless = [
         c for c in singles if (c.rows & ~sample.wrong).sum() >= REQUIRED * (~sample.wrong).sum()
     ]
-    for base in _distinct(harmless)[:MAX_BASES]:
+    for base in _distinct(harmless)[:bases]:
         pairs = search(sample, part, (base.name,), base.edits)
         yield [*pairs, *_conditional(pairs[:10], sample)]
 
@@ -245,13 +242,10 @@ def _confirm(candidates: Sequence[Candidate], sample: Sample, held_out: Sample) 
     best = max((score(c.rows, sample) for c in usable), default=0)
     margin = MARGIN * sample.wrong.size
     usable.sort(key=lambda c: (score(c.rows, sample) < best - margin, c.rank))
-    for place, candidate in enumerate(usable[:MAX_CONDITIONAL]):
-        if is_complete(candidate.gives(held_out), held_out):
-            texts = [
-                c.text
-                for c in usable[place + 1 : MAX_CONDITIONAL]
-                if c.condition == candidate.condition and is_complete(c.gives(held_out), held_out)
-            ]
-            distinct_texts = tuple(dict.fromkeys(t for t in texts if t != candidate.text))
-            return candidate._replace(alternatives=distinct_texts[:MAX_ALTERNATIVES])
-    return None
+    confirmed = [c for c in usable[:MAX_CONDITIONAL] if is_complete(c.gives(held_out), held_out)]
+    if not confirmed:
+        return None
+    first = confirmed[0]
+    texts = [c.text for c in confirmed if c.condition == first.condition]
+    others = [text for text in dict.fromkeys(texts) if text != first.text]
+    return first._replace(alternatives=tuple(others[:MAX_ALTERNATIVES]))

@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 Values = dict[str, Any]
 Alternatives = Mapping[str, Sequence[str]]
 """A place in a program, as an edit names it -> expressions that are tried there."""
+FITTED = "fitted_constant"
+"""The name of a constant that is fitted, in expressions that are tried."""
 
 
 def round_to_single(x: Any) -> Any:
@@ -50,6 +52,24 @@ class Edit(NamedTuple):
     written: tuple[str, ...] = ()
     expected: tuple[str, ...] = ()
 
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """What is changed."""
+        return tuple(self.changes)
+
+    @property
+    def options(self) -> "tuple[Edit]":
+        """The edit itself: a site has several."""
+        return (self,)
+
+    def run(self, program: "Program", _: Sequence[int] = (0,)) -> Values:
+        """Return a program's values with the edit."""
+        return program.run({key: [text] for key, text in self.changes.items()})
+
+    def edit(self, place: int) -> "Edit":
+        """Return an option: the edit itself."""
+        return self.options[place]
+
 
 @cache
 def _code(text: str) -> CodeType:
@@ -68,15 +88,11 @@ def stack(values: Sequence[Any], size: int) -> Any:
     """Return alternatives, each a value for each of ``size`` scenes, as one array."""
     arrays = [np.asarray(value) for value in values]
     largest = max(arrays, key=lambda array: array.ndim)
-    if largest.ndim < 3:
-        out = np.empty((len(arrays), size), np.result_type(*{array.dtype for array in arrays}))
-        for place, array in enumerate(arrays):
-            out[place] = array
-        return out
-    block = np.empty((largest.shape[0], len(arrays), size))
-    for place, array in enumerate(arrays):
-        block[:, place] = array if array.ndim < 3 else array[:, 0]
-    return block
+    shape = (*largest.shape[:-2], len(arrays), size)
+    out = np.empty(shape, np.result_type(*{array.dtype for array in arrays}))
+    for place, array in enumerate(arrays):  # np.concatenate is slower by far
+        out[..., place, :] = array[..., 0, :] if array.ndim > 2 else array
+    return out
 
 
 class Program:
@@ -158,21 +174,22 @@ class Program:
                     total += np.abs(outcome[name] - self.base[name])
         return sums
 
-    def run(self, changes: Alternatives, k: Sequence[Any] = (np.nan,)) -> Values:
+    def run(self, changes: Alternatives, constants: Sequence[Any] = (np.nan,)) -> Values:
         """Return all values with other expressions in some places.
 
-        ``changes`` has the alternatives of each place, and ``k`` the value of "k" in each of them.
+        ``changes`` has the alternatives of each place, and ``constants`` the value of `FITTED` in
+        each of them.
         """
         columns = {
-            key[2:]: self._values(texts, self.typed, k)
+            key[2:]: self._values(texts, self.typed, constants)
             for key, texts in changes.items()
             if key[0] == "<"
         }
-        return self._advance({**self.base, **columns}, set(columns), changes, k)
+        return self._advance({**self.base, **columns}, set(columns), changes, constants)
 
-    def _values(self, texts: Sequence[str], scope: Values, k: Sequence[Any]) -> Any:
+    def _values(self, texts: Sequence[str], scope: Values, constants: Sequence[Any]) -> Any:
         """Return the values of alternatives."""
-        values = [evaluate(t, {**scope, "k": x}) for t, x in zip(texts, k, strict=True)]
+        values = [evaluate(t, {**scope, FITTED: x}) for t, x in zip(texts, constants, strict=True)]
         return values[0] if len(values) == 1 else stack(values, self.size)
 
     def _advance(
@@ -180,20 +197,22 @@ class Program:
         names: Values,
         dirty: set[str],
         changes: Alternatives,
-        k: Sequence[Any] = (np.nan,),
+        constants: Sequence[Any] = (np.nan,),
     ) -> Values:
         """Compute what is edited or reads a dirty name; what is dirty at first keeps its value."""
-        constants = frozenset(dirty)
+        fixed = frozenset(dirty)
         last = self.spelling.equations[-1] if self.spelling.unknowns else ""
         linear = self.linear
         for statement in self.statements[self._first :]:
             target = statement.target
             is_stale = target in changes or target not in names
-            if target not in constants and (is_stale or not dirty.isdisjoint(statement.reads)):
+            if target not in fixed and (is_stale or not dirty.isdisjoint(statement.reads)):
                 scope = {**names, **self.basis} if target in linear else names
                 texts = changes.get(target)
                 names[target] = (
-                    self._values(texts, scope, k) if texts else evaluate(statement.text, scope)
+                    self._values(texts, scope, constants)
+                    if texts
+                    else evaluate(statement.text, scope)
                 )
                 dirty.add(target)
             if target == last and not dirty.isdisjoint(self.spelling.equations):
@@ -201,7 +220,7 @@ class Program:
                 dirty.update(self.spelling.unknowns)
         for shown in (*self.shown, changes):
             results = {
-                key[2:]: self._values(texts, names, k)
+                key[2:]: self._values(texts, names, constants)
                 for key, texts in shown.items()
                 if key[0] == ">"
             }

@@ -33,6 +33,8 @@ class Table:
         What converts each result to the units of the scene.
     theirs, ours, units : dict of str to ndarray
         The table's numbers, the reference, a unit of the last digit written.
+    difference : dict of str to ndarray
+        How far off the table's numbers are.
     misfit : dict of str to ndarray of bool
         Where a result disagrees.
     elimination : dict of str to ndarray
@@ -56,6 +58,7 @@ class Table:
         self.reference = reference(scene, self.names)
         self.ours = dict(self.reference.values)
         self._take_ties()
+        self.difference = {n: np.abs(self.theirs[n] - self.ours[n]) for n in self.names}
         self._grade()
 
     def _limit(self, name: str) -> Floats:
@@ -77,12 +80,11 @@ class Table:
         """Set the rows of each grade."""
         self.misfit: dict[str, Bools] = {}
         self.lost = np.zeros(self.size, bool)
-        for name in self.names:
-            difference = np.abs(self.theirs[name] - self.ours[name])
+        for name, difference in self.difference.items():
             off = difference > self._limit(name)
             close = LOST_DIGITS * self.reference.scales[name] + self.units[name] / 2
-            self.lost |= off & (difference <= close)
             self.misfit[name] = off & ~(difference <= close)
+            self.lost |= off & ~self.misfit[name]
         self._excuse_elimination()
         self.wrong: Bools = np.any(list(self.misfit.values()), 0)
         answer, expectation = (
@@ -106,7 +108,7 @@ class Table:
         sizable = np.zeros(rows.size, bool)
         for name in self.names:
             self.elimination[name][rows] = np.nan_to_num(bounds[name])
-            difference = np.abs(self.theirs[name] - self.ours[name])[rows]
+            difference = self.difference[name][rows]
             misfit = self.misfit[name][rows]
             within &= ~misfit | (difference <= bounds[name] + self._limit(name)[rows])
             sizable |= misfit & (difference > NO_DIGIT_LEFT * self.reference.scales[name][rows])
@@ -118,8 +120,7 @@ class Table:
     def relative_difference(self, name: str) -> Floats:
         """Return differences where a result disagrees, relative to the largest of its kind."""
         size = np.fmax(self.reference.scales[name], np.abs(self.theirs[name]))
-        difference: Floats = np.abs(self.theirs[name] - self.ours[name]) / size
-        return np.where(self.misfit[name], difference, 0.0)
+        return np.where(self.misfit[name], self.difference[name] / size, 0.0)
 
     def notes(self) -> tuple[str, ...]:
         """Return what was not compared, and digits that are lost, in words."""

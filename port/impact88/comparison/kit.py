@@ -3,6 +3,7 @@
 import gzip
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
@@ -78,66 +79,61 @@ def write_kit(folder: str) -> list[str]:
     return sorted(files)
 
 
-def check_kit(kit: str) -> None:
-    """Raise UserError unless a kit is the frozen set."""
-    if kit != FROZEN_ID:
-        raise UserError(f"{quoted(kit)} is not a kit; expected its id, {FROZEN_ID}")
-
-
 class Answers:
-    """A table's answers in the order of the vectors, and the vectors that fail for want of one."""
+    """A table's answers in the order of the vectors.
 
-    def __init__(self, columns: Mapping[str, Any]) -> None:
+    Parameters
+    ----------
+    columns : mapping of str to array_like
+        The table's columns.
+    kit : str
+        The kit's id.
+
+    Attributes
+    ----------
+    scene, results : dict of str to ndarray
+        The vectors' scenes, and the table's cells beside them.
+    lacks : dict of str to ndarray of bool
+        A reason for which vectors fail, and those; the first of a vector counts.
+    """
+
+    def __init__(self, columns: Mapping[str, Any], kit: str) -> None:
+        if kit != FROZEN_ID:
+            raise UserError(f"{quoted(kit)} is not a kit; expected its id, {FROZEN_ID}")
         if absent := [name for name in ("id", *VELOCITIES) if name not in columns]:
             raise UserError(f"missing columns: {' '.join(absent)}; a kit's answers have them")
-        self.vectors = frozen_vectors()
-        self.reasons: dict[str, str] = {}
-        rows: dict[str, list[int]] = {}
-        for row, label in enumerate(np.asarray(columns["id"]).tolist()):
-            rows.setdefault(str(label).strip(), []).append(row)
-        self.stray = sorted(rows.keys() - {vector["id"] for vector in self.vectors})
-        self.places = np.zeros(len(self.vectors), int)
-        for place, vector in enumerate(self.vectors):
-            found = rows.get(vector["id"], [])
-            if len(found) != 1:
-                self.reasons[vector["id"]] = REPEATED if found else MISSING
-            self.places[place] = found[0] if found else -1
-        self.scene = {
-            name: numbers([vector["scene"][name] for vector in self.vectors]) for name in COLUMNS
+        vectors = frozen_vectors()
+        self.ids = [vector["id"] for vector in vectors]
+        labels = [str(label).strip() for label in np.asarray(columns["id"]).tolist()]
+        self.stray = sorted({*labels} - {*self.ids})
+        rows = {label: row for row, label in enumerate(labels)}
+        places = [rows.get(label, -1) for label in self.ids]
+        cells = {
+            name: np.array([*(str(cell).strip() for cell in np.asarray(column).tolist()), ""])[
+                places
+            ]
+            for name, column in columns.items()
+            if name in (*COLUMNS, *COMPARED)
         }
-        self.results = {
-            name: self._in_order(column) for name, column in columns.items() if name in COMPARED
+        self.scene = {n: numbers([vector["scene"][n] for vector in vectors]) for n in COLUMNS}
+        self.results = {name: column for name, column in cells.items() if name in COMPARED}
+        answers = np.array([cells[name] for name in VELOCITIES])
+        written = (~np.isin(np.char.lower(answers), EMPTY)).sum(0)
+        finite = np.isfinite([numbers(column) for column in answers]).sum(0)
+        changed = [numbers(c) != self.scene[n] for n, c in cells.items() if n in COLUMNS]
+        counts = Counter(labels)
+        occurrences = np.array([counts[label] for label in self.ids])
+        expected = np.array([vector["expect"] for vector in vectors])
+        self.lacks: dict[str, Bools] = {
+            MISSING: occurrences == 0,
+            REPEATED: occurrences > 1,
+            NO_NUMBER: written > finite,
+            PARTIAL: (finite > 0) & (finite < len(VELOCITIES)),
+            NO_ANSWER: (finite == 0) & (expected == ANSWER),
+            SURPLUS: (finite > 0) & (expected == REFUSE),
+            CHANGED: np.any(changed, 0),
+            COARSE: np.full(len(places), any(map(self._is_coarse, VELOCITIES))),
         }
-        self._check(columns)
-
-    def _in_order(self, column: Any) -> Any:
-        """Return a column in the order of the vectors, empty where there is no row."""
-        cells = [*(str(cell).strip() for cell in np.asarray(column).tolist()), ""]
-        return np.array([cells[place] for place in self.places])
-
-    def _check(self, columns: Mapping[str, Any]) -> None:
-        """Find inputs that were changed, and cells that are neither empty nor a number."""
-        inputs = {
-            name: numbers(self._in_order(columns[name])) for name in COLUMNS if name in columns
-        }
-        values = {name: numbers(self.results[name]) for name in VELOCITIES}
-        for place, vector in enumerate(self.vectors):
-            label = vector["id"]
-            if label in self.reasons:
-                continue
-            if any(inputs[name][place] != self.scene[name][place] for name in inputs):
-                self.reasons[label] = CHANGED
-            cells = [self.results[name][place].lower() for name in VELOCITIES]
-            texts = [cell for cell in cells if cell not in EMPTY]
-            finite = sum(bool(np.isfinite(values[name][place])) for name in VELOCITIES)
-            if len(texts) > finite:
-                self.reasons[label] = NO_NUMBER
-            elif 0 < finite < len(VELOCITIES):
-                self.reasons[label] = PARTIAL
-            elif not finite and vector["expect"] == ANSWER:
-                self.reasons[label] = NO_ANSWER
-            elif finite and vector["expect"] == REFUSE:
-                self.reasons[label] = SURPLUS
 
     def _is_coarse(self, name: str) -> bool:
         """Return whether half of a result's numbers have too few digits."""
@@ -153,18 +149,16 @@ class Answers:
         wrong : ndarray of bool
             Vectors of which a result disagrees.
         """
-        if any(self._is_coarse(name) for name in VELOCITIES):
-            self.reasons = {v["id"]: self.reasons.get(v["id"], COARSE) for v in self.vectors}
-        for place in np.flatnonzero(wrong):
-            self.reasons.setdefault(self.vectors[place]["id"], DISAGREES)
-        failures: dict[str, list[str]] = {}
-        for label, reason in self.reasons.items():
-            failures.setdefault(reason, []).append(label)
-        total = len(self.vectors)
+        passing = np.ones(wrong.size, bool)
+        failures = {}
+        for reason, lacking in {**self.lacks, DISAGREES: wrong}.items():
+            if ids := np.array(self.ids)[passing & lacking].tolist():
+                failures[reason] = ids
+            passing &= ~lacking
         return {
             "id": FROZEN_ID,
-            "vectors": total,
-            "passed": total - len(self.reasons),
+            "vectors": wrong.size,
+            "passed": int(passing.sum()),
             "failed": failures,
             "stray": self.stray,
         }

@@ -26,6 +26,7 @@ RANK_TWIN = 3  # the same in several statements
 PATTERNS = {
     "a + b": "a; b; a - b; b - a; a * b",
     "a - b": "a; b; a + b; b - a; a * b",
+    "a - b * d": "b - a * d",
     "a * b + d * e": "a * e + d * b",
     "a * b - d * e": "a * e - d * b",
     "1 / a + 1 / b": "1 / (a + b)",
@@ -87,8 +88,8 @@ class Site(NamedTuple):
     expressions: tuple[str, ...]
     options: tuple[tuple[Option, ...], ...]
 
-    def values(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
-        """Return the statements' values, one alternative for each option (that is chosen)."""
+    def run(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
+        """Return a program's values, one alternative for each option (that is chosen)."""
         rows = self.options if chosen is None else [self.options[k] for k in chosen]
         values = {}
         for target, hole in zip(self.targets, self.holes, strict=True):
@@ -99,7 +100,7 @@ class Site(NamedTuple):
                 if slot in hole
             }
             values[target] = evaluate(hole, {**scope, **slots})
-        return values
+        return program.propagate(values)
 
     def edit(self, place: int) -> Edit:
         """Return an option as an edit."""
@@ -182,14 +183,6 @@ def _nodes(tree: ast.expr) -> list[ast.expr]:
     return [n for n in ast.walk(tree) if isinstance(n, ast.expr) and id(n) not in functions]
 
 
-def _with_slots(text: str, nodes: Mapping[ast.expr, int]) -> str:
-    """Return a statement's text with slots in place of nodes."""
-    for node in sorted(nodes, key=lambda n: -n.col_offset):
-        slot = slot_name(nodes[node])
-        text = f"{text[: node.col_offset]}{slot}{text[node.end_col_offset :]}"
-    return text
-
-
 def _form(node: ast.expr) -> str:
     """Return an expression with all names alike."""
     return re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", ast.unparse(node))
@@ -202,13 +195,13 @@ def _site(
     options: Sequence[tuple[Option, ...]],
 ) -> Site:
     """Return the site of expressions in statements, each with its slot."""
-    holes = []
-    for statement in statements:
-        nodes = {n: k for k, (s, n) in zip(slots, group, strict=True) if s is statement}
-        holes.append(_with_slots(statement.text, nodes))
-    texts = dict(zip(slots, (ast.unparse(node) for _, node in group), strict=True))
-    targets = tuple(statement.target for statement in statements)
-    return Site(targets, tuple(holes), tuple(texts.values()), tuple(options))
+    holes = {statement.target: statement.text for statement in statements}
+    members = [(s.target, node, slot) for slot, (s, node) in zip(slots, group, strict=True)]
+    for target, node, slot in sorted(members, key=lambda member: -member[1].col_offset):
+        text = holes[target]
+        holes[target] = f"{text[: node.col_offset]}{slot_name(slot)}{text[node.end_col_offset :]}"
+    texts = {slot: ast.unparse(node) for _, node, slot in members}
+    return Site(tuple(holes), tuple(holes.values()), tuple(texts.values()), tuple(options))
 
 
 def _single_sites(

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .agreement import Bools
 from .evaluation import Floats
+from .grading import Table
 from .numbers import spread
 from .spellings import VELOCITIES
 
@@ -16,43 +16,50 @@ MIN_FRACTION = 0.9  # of the rows that hold another row's results
 SINGLE_ROUNDING = 2.0**29  # of a rounding in double precision: 52 bits less 23
 
 
-def other_rows(
-    ours: Mapping[str, Floats],
-    theirs: Mapping[str, Floats],
-    limits: Mapping[str, Floats],
-    wrong: Bools,
-) -> str:
-    """Return how results are in other rows than their scenes, "" if they are not."""
-    names = [name for name in VELOCITIES if name in theirs]
-    if len(names) < MIN_COLUMNS or wrong.sum() < MIN_ROWS:
-        return ""
-    rows = spread(np.flatnonzero(wrong), MAX_ROWS)
+def mistake_of_table(table: Table, limits: Mapping[str, Floats]) -> str:
+    """Return what is wrong with a table whose program is right, "" if that is not so.
+
+    ``limits``: how far off the numbers of a program with a mistake may be.
+    """
+    names = [name for name, misfit in table.misfit.items() if misfit.any()]
+    if _are_other_rows(table, limits):
+        return "the results are those of other rows: the order of the rows differs"
+    if all(_is_cut(table, name) for name in names):
+        return "the last digit is cut, not rounded"
+    if all(_is_single(table, name) for name in names):
+        return "results are computed or written in single precision (float32)"
+    return ""
+
+
+def _are_other_rows(table: Table, limits: Mapping[str, Floats]) -> bool:
+    """Return whether results are in other rows than their scenes."""
+    names = [name for name in VELOCITIES if name in table.theirs]
+    if len(names) < MIN_COLUMNS or table.wrong.sum() < MIN_ROWS:
+        return False
+    rows = spread(np.flatnonzero(table.wrong), MAX_ROWS)
     count = 0
     for row in rows:
-        places = np.arange(wrong.size)
+        places = np.arange(table.size)
         for name in names:
-            off = np.abs(ours[name][places] - theirs[name][row])
+            off = np.abs(table.ours[name][places] - table.theirs[name][row])
             places = places[off <= limits[name][row]]
         count += bool((places != row).any())
-    if count < MIN_FRACTION * rows.size:
-        return ""
-    return "the results are those of other rows: the order of the rows differs"
+    return count >= MIN_FRACTION * rows.size
 
 
-def cut_digits(ours: Floats, theirs: Floats, units: Floats, wrong: Bools) -> bool:
+def _is_cut(table: Table, name: str) -> bool:
     """Return whether the last digit is cut, not rounded: off by less than a unit, towards 0."""
-    off = ((ours - theirs) * np.sign(ours))[wrong]
-    unit = units[wrong]
+    rows, ours = table.misfit[name], table.ours[name]
+    off = ((ours - table.theirs[name]) * np.sign(ours))[rows]
+    unit = table.units[name][rows]
     return bool(((unit > 0) & (off > 0) & (off < unit * (1 + 1e-9))).all())
 
 
-def single_precision(ours: Floats, theirs: Floats, bounds: Floats, units: Floats) -> bool:
-    """Return whether a column is in single precision, and off by no more than its rounding.
-
-    ``bounds`` is what rounding may change in double precision.
-    """
-    is_number = np.isfinite(ours) & np.isfinite(theirs)
-    with np.errstate(all="ignore"):
-        close = np.abs(theirs - ours) <= SINGLE_ROUNDING * bounds + units / 2
-        single = np.abs(theirs - theirs.astype(np.float32)) <= units / 2
-    return bool((close & single)[is_number].all())
+@np.errstate(all="ignore")
+def _is_single(table: Table, name: str) -> bool:
+    """Return whether a column is in single precision, and off by no more than its rounding."""
+    theirs, half_unit = table.theirs[name], table.units[name] / 2
+    off = table.difference[name]
+    is_close = off <= SINGLE_ROUNDING * table.reference.bounds[name] + half_unit
+    is_single = np.abs(theirs - theirs.astype(np.float32)) <= half_unit
+    return bool((is_close & is_single)[np.isfinite(off)].all())
