@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from functools import cached_property
 from itertools import groupby, pairwise
 
@@ -42,6 +43,10 @@ OWNED = re.compile(
 """A number in one piece after a label."""
 CUT = re.compile(r"\.$")
 """The end of a number that nobody prints."""
+CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
+"""The beginning, or the end, of a number that lost digits."""
+LEADING_ZERO = re.compile(r"(?<![0-9.])0(?=\.)")
+"""A zero that people type before a point."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
@@ -53,6 +58,8 @@ MIN_NUMBERS = 3
 """Numbers, after two letters of labels each, that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
+HALF_TURNS = (-360, -180, 180, 360)
+"""Degrees after which the axes of the crush plane are the same, or both turned."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
 
@@ -191,6 +198,19 @@ class Reading:
     def is_apart(self, name: str) -> bool:
         """Return True for a number with more blanks beside it, within its line."""
         return any(0 < extra < math.inf for extra in self.extra_blanks.get(name, ()))
+
+    def is_cut(self, name: str, printed: str) -> bool:
+        """Return True for the beginning or the end of a printed number where the rest of it may
+        have been lost."""
+        read = LEADING_ZERO.sub("", self.slots[name].text)
+        front, end = self.extra_blanks[name]
+        if front > 0 and printed.endswith(read):
+            return True
+        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
+            return True
+        turns = HALF_TURNS if printed and name == "GA" else ()
+        numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
+        return end > 0 and any(number.startswith(read) for number in numbers)
 
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and after the last character of the page's own."""
