@@ -116,11 +116,9 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     read exactly: either may be the note.
     """
     labels = find_labels(glyphs)
-    limits = [
-        WRONG / (2 if len(find_labels(line)) == 1 else 1)
-        for line in split_at_gaps(glyphs, LINE_GAP)
-        for _ in line
-    ]
+    limits: list[float] = []
+    for line in split_at_gaps(glyphs, LINE_GAP):
+        limits += [WRONG / (2 if len(find_labels(line)) == 1 else 1)] * len(line)
     sums = np.append(0.0, np.full(len(LABELS), np.inf))
     ways = []
     for (text, start, _), costs in zip(labels, _costs_of(glyphs, labels), strict=True):
