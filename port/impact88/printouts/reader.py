@@ -295,7 +295,18 @@ class _Reader:
                 reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
             before = anchor
         self._split_replies()
+        self._drop_text_outside()
         return reading
+
+    def _drop_text_outside(self) -> None:
+        """Drop the foreign text above the page's first line and below its last."""
+        reading = self.reading
+        if reading.places():
+            start, stop = reading.span()
+            lines = split_at_gaps(self.glyphs, LINE_GAP)
+            own = [line for line in lines if line[-1].offset >= start and line[0].offset < stop]
+            first, last = own[0][0].offset, own[-1][-1].offset
+            reading.foreign = [run for run in reading.foreign if first <= run[0].offset <= last]
 
     def _read_label(self, anchor: Anchor) -> None:
         """Give the glyphs of an anchor to the cells of its label."""
@@ -336,7 +347,7 @@ class _Reader:
             if owner:
                 cells = [SLOT_CELLS[owner], *cells]
         if tail:
-            slots = self._align(tail, cells, before.label, after, is_exact and not count) | slots
+            slots = self._align(tail, cells, before.label, is_exact and not count) | slots
         for name, slot in slots.items():
             if name == "ANGLES":
                 self._add_angles(slot)
@@ -378,7 +389,6 @@ class _Reader:
         glyphs: Sequence[Glyph],
         cells: Sequence[int],
         before: Label,
-        after: Label,
         is_owned: bool,
     ) -> dict[str, Slot]:
         """Align glyphs with cells; return the slots, and list what belongs to none.
@@ -426,8 +436,7 @@ class _Reader:
                 slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
                 slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
                 slots[name] = slot
-        indices = _within_page(glyphs, foreign, before is FIRST, after is LAST)
-        for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):
+        for _, run in groupby(enumerate(sorted(foreign)), lambda pair: pair[1] - pair[0]):
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
 
@@ -509,17 +518,6 @@ def _count_torn(rest: Sequence[Glyph]) -> int:
         if digits < len(word):
             break
     return count
-
-
-def _within_page(
-    glyphs: Sequence[Glyph], foreign: set[int], is_first: bool, is_last: bool
-) -> list[int]:
-    """Return the foreign glyphs without the lines above and below the page."""
-    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs])
-    own = [int(lines[i]) for i in range(len(glyphs)) if i not in foreign]
-    first = min([*own, int(lines[-1])]) if is_first else 0
-    last = max([*own, 0]) if is_last and not is_first else int(lines[-1])
-    return [i for i in sorted(foreign) if first <= lines[i] <= last]
 
 
 def _count_numbers(glyphs: Sequence[Glyph], members: list[int], own: dict[str, list[int]]) -> int:
