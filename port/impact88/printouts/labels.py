@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .costs import ALIKE, SLIGHT, UNPAIRED, WRONG
+from .costs import ALIKE, SLIGHT, WRONG
 from .glyphs import LINE_GAP, LOOKALIKES, WIDE_GAP, Glyph, chars_of, split_at_gaps
-from .page import ASTERISKS, CELLS, ROWS
+from .page import CELLS, ROWS
 
 
 class Label(NamedTuple):
@@ -71,8 +71,6 @@ LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
 """The labels of each row."""
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
 LABEL = re.compile("|".join(map(re.escape, _TEXTS)))
-CLOSED = re.compile(r"[-+.E0-9]{1,14}\)")
-"""The number of a label in brackets."""
 WORDS = re.compile("[A-Z]{3}")
 _AHEAD = np.subtract.outer(np.arange(len(LABELS) + 1), np.arange(len(LABELS) + 1)).T
 _STEPS = np.where(
@@ -121,7 +119,7 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
         limits += [WRONG / (2 if len(find_labels(line)) == 1 else 1)] * len(line)
     sums = np.append(0.0, np.full(len(LABELS), np.inf))
     ways = []
-    for (text, start, _), costs in zip(labels, _costs_of(glyphs, labels), strict=True):
+    for (text, start, _), costs in zip(labels, _costs_of(labels), strict=True):
         steps = sums[:, None] + _STEPS
         placed = steps.min(axis=0) + costs
         noted = sums + (limits[start] if text.endswith("=") else np.inf)
@@ -142,35 +140,29 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     ]
 
 
-def _costs_of(
-    glyphs: Sequence[Glyph], labels: Sequence[tuple[str, int, int]]
-) -> NDArray[np.float64]:
+def _costs_of(labels: Sequence[tuple[str, int, int]]) -> NDArray[np.float64]:
     """Return the cost of each label that was read in each label's place, after that of none.
 
     Two of a row that were exchanged cost as much as one.
     """
-    chars = chars_of(glyphs)
-    costs = np.full((len(labels), len(LABELS) + 1), np.inf)
-    for k, (text, start, stop) in enumerate(labels):
-        is_bracketed = chars[start - 1 : start] == "(" or bool(CLOSED.match(chars, stop))
-        costs[k, 1:] = [_label_cost(label, text, is_bracketed) for label in LABELS]
-    for k, ((text, *_), (next_text, *_)) in enumerate(pairwise(labels)):
+    texts = [text for text, *_ in labels]
+    costs = np.array(
+        [[np.inf, *(_label_cost(label.text, text) for label in LABELS)] for text in texts]
+    )
+    for k, pair in enumerate(pairwise(texts)):
         for j, (first, second) in enumerate(pairwise(LABELS), 1):
-            if first.row == second.row and (second.text, first.text) == (text, next_text):
+            if first.row == second.row and (second.text, first.text) == pair:
                 costs[k, j] = costs[k + 1, j + 1] = WRONG / 2
     return costs
 
 
 @lru_cache(maxsize=10_000)
-def _label_cost(label: Label, read: str, is_bracketed: bool) -> float:
-    """Return the cost that a label was read as another, or with a bracket too many or few."""
-    cost = 0.0
-    if label.name[:1] in ("X", "Y") and is_bracketed != (label.row > ASTERISKS[0]):
-        cost = UNPAIRED / 3
-    if label.text == read:
-        return cost
-    if not (label.text[-1] == read[-1] == "="):
+def _label_cost(label: str, read: str) -> float:
+    """Return the cost that a label was read as another."""
+    if label == read:
+        return 0.0
+    if not (label[-1] == read[-1] == "="):
         return 99.0
-    changes = [(a, b) for a, b in zip(label.text, read, strict=False) if a != b]
-    is_alike = len(label.text) == len(read) and all(b in LOOKALIKES.get(a, "") for a, b in changes)
-    return cost + (ALIKE + UNPAIRED / 3 if is_alike and len(changes) == 1 else WRONG)
+    changes = [(a, b) for a, b in zip(label, read, strict=False) if a != b]
+    is_alike = len(label) == len(read) and all(b in LOOKALIKES.get(a, "") for a, b in changes)
+    return ALIKE if is_alike and len(changes) == 1 else WRONG
