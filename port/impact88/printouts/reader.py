@@ -20,7 +20,7 @@ import numpy as np
 from .align import Aligner
 from .costs import ALIKE, WRONG
 from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of, glyphs_of, split_at_gaps
-from .labels import LABELS, WORDS, Anchor, Label, find_anchors, find_labels, is_note
+from .labels import LABELS, Anchor, Label, find_anchors, find_labels, is_note
 from .numerals import PRINTED, as_printed, readings
 from .page import (
     ANGLES,
@@ -427,15 +427,10 @@ class _Reader:
             if not label and not is_single:
                 foreign.update(members)
                 continue
-            text = chars_of([glyphs[i] for i in members])
-            if (note := WORDS.search(text)) and name not in MANY:
-                foreign.update(members[note.start() :])
-                members = members[: note.start()]
-            if members:
-                slot = Slot([glyphs[i] for i in members], label, not is_whole)
-                slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
-                slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
-                slots[name] = slot
+            slot = Slot([glyphs[i] for i in members], label, not is_whole)
+            slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
+            slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
+            slots[name] = slot
         for _, run in groupby(enumerate(sorted(foreign)), lambda pair: pair[1] - pair[0]):
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
