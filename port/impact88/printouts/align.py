@@ -70,7 +70,7 @@ class Aligner:
         self.cells = cells
         lost = [0.0 if cell.kind == "between" else UNPAIRED for cell in cells]
         self.lost_sums = np.cumsum([0.0, *lost])
-        self.own_gaps = np.array([_own_gaps(cells, j) for j in range(len(cells))])
+        self.own_gaps = np.array([*map(_own_gaps, cells)])
         self.added_gaps = np.array([[0.0] * 4, *map(_added_gaps, cells)])
         self._costs: dict[str, tuple[Costs, Costs]] = {}
 
@@ -122,15 +122,11 @@ class Aligner:
         return places[::-1]
 
 
-def _own_gaps(cells: Sequence[Cell], j: int) -> list[float]:
+def _own_gaps(cell: Cell) -> list[float]:
     """Return the cost of each width of gap before a glyph in a cell."""
-    cell = cells[j]
-    if cell.kind != "word":
+    if cell.kind != "word" or cell.first:
         return [0.0, 0.0, 0.0, 0.0]
-    if not cell.first:
-        return [0.0, ALIKE, ALIKE, WRONG]
-    is_after_number = cell.char.isalpha() and j > 0 and cells[j - 1].kind == "slot"
-    return [UNPAIRED * is_after_number, 0.0, 0.0, 0.0]
+    return [0.0, ALIKE, ALIKE, WRONG]
 
 
 def _added_gaps(cell: Cell) -> list[float]:
