@@ -377,8 +377,6 @@ class _Reader:
     def _add_slot(self, name: str, slot: Slot) -> None:
         """Add the text in the place of a number, or a second one."""
         slots = self.reading.slots
-        if name in slots and slot.is_clean and not slots[name].is_clean:
-            slots[name], slot = slot, slots[name]
         if name in slots:
             self.reading.repeated.append((name, slot))
         else:

@@ -36,8 +36,6 @@ from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digi
 
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
-MAX_FOREIGN_DIGITS = 6
-"""Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
 MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
 WORDS = {*re.findall("[A-Z]+", re.sub("{.*?}", "", " ".join(ROWS)))}
@@ -372,11 +370,8 @@ class Comparison:
             findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
-        foreign = "".join(finding.read for finding in findings if finding.kind is Kind.FOREIGN)
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
-        is_unsure = is_machine_read or bool(unsure)
-        is_unsure |= sum(map(str.isdigit, foreign)) >= MAX_FOREIGN_DIGITS
-        is_open = is_unsure and len(numbers) + len(unread) > MAX_ALTERED
+        is_open = (is_machine_read or bool(unsure)) and len(numbers) + len(unread) > MAX_ALTERED
         is_open |= any(finding.name in INPUTS for finding in unread)
         is_open |= any(map(self.reading.is_apart, INPUTS))
         swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
