@@ -45,7 +45,7 @@ def glyph_cost(cell: Cell, char: str) -> float:
         The cost, 0 for the printed character, or for one of a number in a slot.
     """
     if cell.kind == "between":
-        return UNPAIRED + ALIKE * char.isdigit()  # a digit is rather a number's
+        return UNPAIRED
     if cell.kind == "slot":
         if char in NUMBER_CHARS or (cell.name.startswith("REPLY") and char in ",;"):
             return 0.0
@@ -78,12 +78,11 @@ class Aligner:
         """Return the costs of a character in each cell, and of it added after each."""
         if char not in self._costs:
             costs = [glyph_cost(cell, char) for cell in self.cells]
-            outside = UNPAIRED + ALIKE * char.isdigit()
             extra = [
-                WRONG + ALIKE * char.isdigit() if cell.kind == "word" else cost
+                WRONG if cell.kind == "word" else cost
                 for cell, cost in zip(self.cells, costs, strict=True)
             ]
-            extra[-1] = min(extra[-1], outside)
+            extra[-1] = min(extra[-1], UNPAIRED)
             self._costs[char] = np.array(costs), np.array([UNPAIRED, *extra])
         return self._costs[char]
 

@@ -18,7 +18,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from .align import Aligner
-from .costs import ALIKE, WRONG
+from .costs import ALIKE
 from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of, glyphs_of, split_at_gaps
 from .labels import LABELS, Anchor, Label, find_anchors, find_labels, is_note
 from .numerals import PRINTED, as_printed, readings
@@ -161,12 +161,7 @@ class Reading:
         if name not in self.slots:
             return {}
         slot = self.slots[name]
-        texts = dict(readings(slot.text))
-        if slot.is_torn:
-            texts = {text: cost + ALIKE for text, cost in texts.items()}
-            for text, cost in readings(chars_of(next(split_at_gaps(slot.glyphs)))).items():
-                texts.setdefault(text, cost + WRONG)
-        return texts
+        return {text: cost + ALIKE * slot.is_torn for text, cost in readings(slot.text).items()}
 
     def places(self) -> dict[int, tuple[int, int]]:
         """Return the place of each cell of which something was read."""
