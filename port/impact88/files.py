@@ -9,7 +9,7 @@ import errno
 import io
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
 from .errors import UserError
@@ -125,25 +125,15 @@ def decoding(path: str, message: str = "cannot be read") -> Iterator[None]:
 
 
 class Source(io.RawIOBase):
-    """A binary stream from a file or standard input, whose read errors are UserErrors naming it.
-    ``count``: the bytes read so far."""
+    """A binary stream from a file or standard input, whose read errors are UserErrors naming it."""
 
     def __init__(self, path: str) -> None:
         """Raises UserError if there is no such file or it cannot be opened."""
         self.name = display_name(path)
-        self.count = 0
         self._inner: Any = None
         self._keep = path == "-"
         with _naming(self.name, "read"):
             self._inner = sys.stdin.buffer if self._keep else io.BufferedReader(io.FileIO(path))
-
-    @property
-    def extent(self) -> tuple[int | None, Callable[[], int]]:
-        """The size in bytes, None if unknown, and a function that returns the bytes read so far."""
-        with suppress(OSError):
-            if not self._keep and os.path.isfile(self._inner.name):
-                return os.fstat(self._inner.fileno()).st_size, lambda: self.count
-        return None, lambda: 0
 
     def readable(self) -> bool:
         """Return True."""
@@ -153,7 +143,6 @@ class Source(io.RawIOBase):
         """Read into ``buffer`` and return the number of bytes, 0 at the end. Raises UserError."""
         with _naming(self.name, "read"):
             count: int = self._inner.readinto1(buffer)
-        self.count += count
         return count
 
     def close(self) -> None:

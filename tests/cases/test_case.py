@@ -14,32 +14,21 @@ REAR_END = {"units": "us", "M": 4, "MA": 3000, "MB": 2000, "E": 0.2}
 REAR_END |= {"UX": -30, "UY": 0, "VX": 10, "VY": 0}
 
 
-def refusal(text: str) -> str:
-    with pytest.raises(UserError) as error:
-        Case.loads(text, "crash.toml")
-    assert "\n" not in str(error.value)
-    return str(error.value)
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (
-            "MA = 1\nMUU = 3",
-            "crash.toml, line 2: 'MUU' is not an entry of a scene; did you mean MU?",
-        ),
+        ("MA = 1\nMUU = 3", "line 2: 'MUU' is not an entry of a scene; did you mean MU?"),
         ('MA = 1\n\nUX = "25 lb"', "crash.toml, line 3: UX = '25 lb': lb is not a unit"),
         ("MA = .9", "a number with a digit first (0.9)"),
         ("MA = 1\nMA = 2\n", "Cannot overwrite a value (at line 2, column 7)"),
         ("MA = true", "crash.toml, line 1: MA = True: expected a number or a text"),
-        ("MA = [1]", "MA = [1]: expected"),
         ("[MA]\nvalues = 1", "crash.toml, line 1: MA = {'values': 1}: expected"),
         ("x=" + "[" * 1500, "expected NAME = VALUE"),
         ("x=" + "9" * 20_000, "is longer than 20,000 characters"),
         ('units = "imperial"', "units = 'imperial'; expected us, chapter, metric, si"),
         ('MB = 4\nMA = "3 lb"', "line 2: MA = '3 lb': MA is in lb; expected units = \"us\""),
         ("CAF = 3", "expected CAF and CAL, or DA and PA in their place"),
-        ("CAF = 3\nCAL = 4\nPA = 3", "expected CAF and CAL, or DA and PA in their place"),
+        ("CAF = 3\nCAL = 4\nPA = 3", "CAL, or DA and PA in their place"),
         ('UXX_source = "EDR"', "line 1: 'UXX_source' is not an entry of a scene"),
         ("SFA = 30", "'SFA' is not an entry of a scene; did you mean SAF?"),
         ('TA = "corse"', "course of TA TB"),
@@ -51,7 +40,10 @@ def refusal(text: str) -> str:
     ],
 )
 def test_refused(text: str, message: str) -> None:
-    assert message in refusal(text)
+    with pytest.raises(UserError) as error:
+        Case.loads(text, "crash.toml")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
 
 
 def test_files(tmp_path: Path) -> None:
@@ -67,11 +59,11 @@ def test_files(tmp_path: Path) -> None:
 
 def test_options_name_the_view_of_a_file_that_names_none() -> None:
     text = "UX = 30\nUY = 1"
-    assert Case.loads(text, units="us", axes="sae").view == View("us", "sae")
-    assert Case.loads('units = "si"\n' + text, units="us").view == View("si")
+    assert Case.loads(text, view=View("us", "sae")).view == View("us", "sae")
+    assert Case.loads('units = "si"\n' + text, view=View("us")).view == View("si")
     with pytest.raises(UserError, match="axes = 'listingsae'; expected listing, sae"):
         Case.loads('axes = "listingsae"')
-    assert Case.loads('axes = "listing"\n' + text, axes="sae").view == View()
+    assert Case.loads('axes = "listing"\n' + text, view=View(axes="sae")).view == View()
     assert Case.loads('TA = "0.5 rad"\nMB = "inf"').view == View()
 
 
@@ -86,11 +78,10 @@ def test_with_is_the_edited_file() -> None:
     with pytest.raises(UserError, match=r"UX = '28 .. 36 \+- 1' is not an amount"):
         case.with_(UX="28 .. 36").with_(UX="+- 1")
     assert "UX" not in case.with_(UX="").entries
-    assert case.written["UX_source"] == "EDR"
     assert "UX_source" not in case.with_(UX="3").written
     with pytest.raises(UserError, match=r"^--set: UX = 'much' is not an amount"):
         case.with_("--set", UX="much")
-    with pytest.raises(UserError, match="MB = '\\+- 2' is not an amount"):
+    with pytest.raises(UserError, match=r"MB = '\+- 2' is not an amount"):
         case.with_(MB="+- 2")
 
 
@@ -98,10 +89,9 @@ def test_with_is_the_edited_file() -> None:
 def test_published_scenes_reach_the_program_as_typed(number: int) -> None:
     scene = impact88.sample(number)
     case = Case.of(dict(scene))
-    assert dict(case.texts) == dict(scene)
-    assert Case.loads(case.toml()).texts == case.texts
     in_chapter = Case.of({**scene, "units": "chapter"})
-    assert dict(in_chapter.texts) == dict(scene)
+    assert case.texts == in_chapter.texts == dict(scene)
+    assert Case.loads(case.toml()).texts == case.texts
 
 
 def test_estimate_is_for_passenger_cars() -> None:
@@ -115,8 +105,7 @@ def test_estimate_is_for_passenger_cars() -> None:
             of(weight)
     case = of("800", LA="10", BA="5")
     assert case.entries["IA"].value == float(f"{800 / 32.17405 * 125 / 12:.4g}")
-    assert case.derived == ("IA",)
-    assert "a uniform rectangle" in case.remarks[0]
+    assert (case.derived, "a uniform rectangle" in case.remarks[0]) == (("IA",), True)
     amount = of("3000").with_(IA="+- 20 %").entries["IA"]
     assert (amount.low, amount.high) == (1507.2, 2260.8)
 
@@ -131,17 +120,15 @@ def test_course_and_contact_point() -> None:
     assert uncertain.texts["TA"] == "-135"
     polar = Case.of({"CAF": 3, "CAL": -4})
     assert (polar.texts["DA"], polar.texts["PA"]) == ("5", "-53.13010235415598")
-    assert Case.of({"CAF": "3 +- 1", "CAL": 4}).entries["CAF"].low == 2
-    assert Case.of({"CAF": "3 +- 1", "CAL": 4}).texts["DA"] == "5"
+    polar = Case.of({"CAF": "3 +- 1", "CAL": 4})
+    assert (polar.entries["CAF"].low, polar.texts["DA"]) == (2, "5")
 
 
-def test_point_masses_need_no_dimensions() -> None:
+def test_point_masses_need_no_dimensions_and_have_a_plane_across_their_line() -> None:
     case = Case.of(REAR_END)
     assert (case.texts["DA"], case.texts["IA"], "GA" in case.texts) == ("0", "1", False)
     assert "DA" not in case.numbers
 
-
-def test_a_line_of_motion_has_its_contact_plane_across() -> None:
     def plane(**changes: str) -> float | None:
         return line_of_motion(Case.of({**REAR_END, **changes}).entries)
 
@@ -160,9 +147,7 @@ def test_friction_as_a_share_of_the_critical() -> None:
     assert case.entries["MU"].share
     assert float(case.texts["MU"]) == pytest.approx(0.85 * abs(critical), rel=1e-12)
     assert any("85 % of the critical friction" in remark for remark in case.remarks)
-    del scene["GA"]
-    without = Case.of({**scene, "MU": "85 %"})
-    assert "MU" not in without.texts
+    assert "MU" not in case.with_(GA="").texts
 
 
 @pytest.mark.parametrize(
@@ -184,8 +169,8 @@ def test_plausibility(changes: dict[str, str], remark: str) -> None:
     angles = {"VX": "9", "VY": "0", "TB": "45", "TA": "180"}
     case = Case.of({"units": "metric", **plain, **angles, "IA": "2000"})
     assert not case.remarks
-    for changes_to_none in ({"IA": "376"}, {"MA": "5 t", "IA": "179999"}):
-        assert not case.with_(**changes_to_none).remarks
+    assert not case.with_(IA="376").remarks
+    assert not case.with_(MA="5 t", IA="179999").remarks
     assert any(remark in text for text in case.with_(**changes).remarks)
 
 

@@ -19,7 +19,7 @@ from impact88.cases import Case, View
 from impact88.comparison import kit, oracle, selfcheck, words
 from impact88.comparison.agreement import COMPARED
 from impact88.comparison.spellings import VELOCITIES
-from impact88.tables.solving import solve_table
+from impact88.tables.solving import Solver
 
 US_ROW = ".1,.5,-.8,7,4,-30,-20,-40,0,60,4600,3100,3700,2000,-20,0,0,10,17,0,6"
 
@@ -193,7 +193,7 @@ class TestTables:
         (tmp_path / "a.csv").write_text(f"{','.join(impact88.names.SCENE)}\n{US_ROW}\n")
         case = Case.of({}, view=View("us"))
         for name in ("b.csv", "b.jsonl"):
-            solve_table(str(tmp_path / "a.csv"), str(tmp_path / name), case=case)
+            Solver(str(tmp_path / "a.csv"), case).write(str(tmp_path / name))
             comparison = impact88.compare(tmp_path / name, units="us")
             assert comparison.passed
             assert comparison.results == COMPARED

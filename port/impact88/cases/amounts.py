@@ -19,7 +19,7 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Literal, NamedTuple, cast
+from typing import Any, Literal, NamedTuple
 
 from ..decimals import negated, to_text
 from ..errors import UserError, quoted
@@ -174,9 +174,15 @@ class Amount:
         text = "" if offset or abs(factor) != 1 else self.text
         if text and factor < 0 and value:
             text = negated(text)
-        kind = self.kind if ends[0] != ends[1] else "exact"
-        sd = float(abs(factor) * Fraction(self.sd))
-        return Amount(value, min(ends), max(ends), kind, sd, text, self.share)
+        return Amount(
+            value,
+            min(ends),
+            max(ends),
+            self.kind if ends[0] != ends[1] else "exact",
+            float(abs(factor) * Fraction(self.sd)),
+            text,
+            self.share,
+        )
 
 
 # -- the notation
@@ -237,19 +243,18 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
     try:
         if len(words) > MAX_LENGTH:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
-        if words.startswith("skid"):
-            return _skid(name, words, view)
-        amount = _amount(name, words, view)
+        amount = (_skid if words.startswith("skid") else _amount)(name, words, view)
+        if name in SKIDDING and amount.limits(0.0)[0] < 0:
+            raise UserError(
+                f"a speed is not negative; expected 0 or more, or H{name[1:]} turned by 180"
+            )
+        return amount
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except OverflowError:
         raise UserError(f"{entry} is beyond the range of doubles") from None
     except ValueError:
         raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
-    if name in SKIDDING and amount.limits(0.0)[0] < 0:
-        course = f"H{name[1:]} turned by 180"
-        raise UserError(f"{entry}: a speed is not negative; expected 0 or more, or {course}")
-    return amount
 
 
 def normalize(text: str) -> str:
@@ -258,7 +263,7 @@ def normalize(text: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def parse(rule: str, words: str) -> tuple[str, tuple[Number, ...]]:
+def parse(rule: str, words: str) -> tuple[Any, tuple[Number, ...]]:
     """Return the kind of a `normalize`d amount, one of `Amount` or "around" for a half width, and
     its numbers.
 
@@ -305,8 +310,9 @@ def _amount(name: str, words: str, view: View) -> Amount:
         raise UserError("expected a number without %; MU takes shares of the critical")
     unit = units[0] if units else shown_unit(rule, view.units)
     if "," in words and {each.side for each in (unit, *units)} != {"us"}:
-        digits = words.replace(",", "")
-        raise UserError(f"the comma may be a decimal one; expected {digits}, or a decimal point")
+        raise UserError(
+            f"the comma may be a decimal one; expected {words.replace(',', '')}, or a decimal point"
+        )
     values: list[Any] = [  # exact fractions, until they are mapped
         number.value * (number.unit or unit).size / unit.size for number in numbers
     ]
@@ -321,7 +327,7 @@ def _amount(name: str, words: str, view: View) -> Amount:
         sd = high
         reach = math.inf if sd else 0
         low, high = value - reach, value + reach
-    amount = Amount(value, low, high, cast(Kind, kind), sd, digits, name == "MU" and bool(units))
+    amount = Amount(value, low, high, kind, sd, digits, name == "MU" and bool(units))
     return amount.mapped(*view.map(name, unit.symbol))
 
 

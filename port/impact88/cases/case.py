@@ -16,16 +16,17 @@ from ..errors import UserError, quoted
 from ..files import display_name, read_text
 from ..names import DEFAULT_M, SCENE, did_you_mean
 from .amounts import TOLERANCE, Amount, normalize, read
-from .motion import contact_point, courses
+from .motion import Amounts, Values, contact_point, courses
 from .scenefile import ABOUT, INPUTS, SOURCE, read_toml, write_toml
 from .units import PLAIN, View
 from .vehicles import ESTIMATE, SIZES, estimate, implausible
 
-POINT_DEFAULTS = dict.fromkeys("DA DB PA PB TA TB EM WA WB".split(), "0") | {
+POINT_DEFAULTS = dict.fromkeys("EM DA DB PA PB TA TB IA IB WA WB".split(), "0") | {
     "IA": "1",  # line 480 divides by the inertias, of points, too
     "IB": "1",
 }
 """Inputs that a scene of point masses need not have, and what is typed in their place."""
+Texts = Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -48,18 +49,16 @@ class Case:
         typed in place of their dimensions.
     remarks : tuple of str
         What was assumed, and values that are implausible.
-    title, case, examiner, date : str
-        Headings of a report.
     written : mapping of str to str
         The entries as written; NAME_source says where a value comes from.
     source : str
         Name of the case in messages.
-    sizes : mapping of str to Amount
-        LA BA LB BB, in base units.
     derived : tuple of str
         Names of the scene's values that follow from others: estimates, courses, and shares.
     places : mapping of str to str
         Places of entries for messages.
+    title, case, examiner, date : str
+        Headings of a report.
 
     Examples
     --------
@@ -70,41 +69,40 @@ class Case:
     '-36.666666666666664'
     """
 
-    entries: Mapping[str, Amount]
-    view: View = PLAIN
-    texts: Mapping[str, str] = field(default_factory=dict)
-    numbers: Mapping[str, float] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
-    title: str = ""
-    case: str = ""
-    examiner: str = ""
-    date: str = ""
-    written: Mapping[str, str] = field(default_factory=dict)
-    source: str = "scene"
-    sizes: Mapping[str, Amount] = field(default_factory=dict)
-    derived: tuple[str, ...] = ()
-    places: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+    entries: Amounts
+    view: View
+    texts: Texts
+    numbers: Values
+    remarks: tuple[str, ...]
+    written: Texts
+    source: str
+    derived: tuple[str, ...]
+    places: Texts = field(repr=False, compare=False)
+    title: str
+    case: str
+    examiner: str
+    date: str
 
     @classmethod
-    def load(cls, path: str, **view: str | None) -> Case:
+    def load(cls, path: str, view: View = PLAIN) -> Case:
         """Return the case in a TOML file.
 
         Parameters
         ----------
         path : str
             The file, ``-`` for standard input.
-        **view : str or None
-            ``units``, ``axes`` and ``headings`` of a file that names none.
+        view : View, optional
+            The view of a file that names none.
 
         Raises
         ------
         UserError
             For a file that cannot be read as a case; the message names file, line and entry.
         """
-        return cls.loads(read_text(path), display_name(path), **view)
+        return cls.loads(read_text(path), display_name(path), view)
 
     @classmethod
-    def loads(cls, text: str, source: str = "scene", **view: str | None) -> Case:
+    def loads(cls, text: str, source: str = "scene", view: View = PLAIN) -> Case:
         """Return the case in the text of a TOML file.
 
         Parameters
@@ -113,7 +111,7 @@ class Case:
             The document.
         source : str, default "scene"
             Its name in messages.
-        **view : str or None
+        view : View, optional
             See `load`.
 
         Raises
@@ -122,7 +120,7 @@ class Case:
             See `load`.
         """
         texts, places = read_toml(text, source)
-        return cls.of(texts, source, View.of(**view), places)
+        return cls.of(texts, source, view, places)
 
     @classmethod
     def of(
@@ -130,7 +128,7 @@ class Case:
         entries: Mapping[str, Any],
         source: str = "scene",
         view: View = PLAIN,
-        places: Mapping[str, str] | None = None,
+        places: Mapping[str, str] = {},
     ) -> Case:
         """Return the case of entries by name.
 
@@ -151,42 +149,42 @@ class Case:
             For an unknown name, a text that is not an amount, a unit in a file that names no
             ``units``, and entries that contradict one another.
         """
-        entered = {**asdict(view), **entries}
-        written = {n: text for n, value in entered.items() if (text := entry_text(n, value))}
-        places = places or {}
+        texts = {n: entry_text(n, value) for n, value in {**asdict(view), **entries}.items()}
+        written = {name: text for name, text in texts.items() if text}
         for name in written:
             if name.removesuffix(SOURCE) not in INPUTS and name not in ABOUT:
                 hint = did_you_mean(name, (*INPUTS, *ABOUT))
-                fault = f"{quoted(name)} is not an entry of a scene{hint}"
-                raise UserError(fault, places.get(name, source))
+                raise UserError(
+                    f"{quoted(name)} is not an entry of a scene{hint}", places.get(name, source)
+                )
         given = {"M": DEFAULT_M} | {n: text for n, text in written.items() if n in INPUTS}
         try:
-            view = View.of(**{n: written.get(n) for n in ("units", "axes", "headings")})
+            view = View.of(**written)
             amounts, remarks = _read_entries(given, view, places)
-            sizes = {n: amounts.pop(n) for pair in SIZES.values() for n in pair if n in amounts}
-            derived = [
-                n
-                for n, a in amounts.items()
-                if a.share or math.isnan(a.value) or given[n].startswith(ESTIMATE)
-            ]
             values = {n: a.value for n, a in amounts.items() if not math.isnan(a.value)}
-            texts, shares = _nominal_digits(amounts, values)
+            texts, more = _nominal_digits(amounts, values)
         except UserError as error:
             raise error if error.where else UserError(str(error), source) from None
-        numbers = {name: float(texts[name]) for name in SCENE if name in texts}
+        numbers = {name: float(text) for name, text in texts.items()}
         if amounts["M"].value == 4:
             texts = POINT_DEFAULTS | texts
+        for name, is_off, words in implausible(values, view, courses(values)):
+            if is_off:
+                more.append(f"{name} = {given[name]}: {words}")
         return cls(
             amounts,
             view,
-            {name: texts[name] for name in SCENE if name in texts},
+            texts,
             numbers,
-            (*remarks, *shares, *_implausible(values, given, view)),
-            written=written,
-            source=source,
-            sizes=sizes,
-            derived=tuple(derived),
-            places=places,
+            (*remarks, *more),
+            written,
+            source,
+            tuple(
+                n
+                for n, a in amounts.items()
+                if a.share or math.isnan(a.value) or given[n].startswith(ESTIMATE)
+            ),
+            places,
             **{name: written.get(name, "") for name in ("title", "case", "examiner", "date")},
         )
 
@@ -216,7 +214,7 @@ class Case:
                     middle = f"{middle} {self.view.unit(name)}".rstrip()
                 value = f"{middle} {value}"
             texts[name] = value
-        places = {**self.places, **dict.fromkeys(changes, where)} if where else self.places
+        places = {**self.places, **dict.fromkeys(changes, where or self.source)}
         return Case.of(texts, self.source, places=places)
 
     @property
@@ -238,16 +236,14 @@ class Case:
             rows = [part.replace(",", " ").split() for part in text.split(";") if part]
             return {(first, second): float(number) for first, second, number in rows}
         except ValueError:
-            message = f'correlations = {quoted(text)}; expected such as "UX,VX 0.5; MA,IA 0.9"'
-            raise UserError(message, self.place("correlations")) from None
-
-    def place(self, name: str) -> str:
-        """Return the place of an entry for messages: file and line, or an option."""
-        return self.places.get(name, self.source)
+            raise UserError(
+                f'correlations = {quoted(text)}; expected such as "UX,VX 0.5; MA,IA 0.9"',
+                self.places.get("correlations", self.source),
+            ) from None
 
     def toml(self) -> str:
         """Return the case as a commented scene file, entries as written."""
-        return write_toml(self.written, view=self.view)
+        return write_toml(self.written, self.view)
 
 
 def entry_text(name: str, value: Any) -> str:
@@ -260,9 +256,7 @@ def entry_text(name: str, value: Any) -> str:
         raise UserError(f"{name} is {quoted(value)}; expected a number or a text") from None
 
 
-def _read_entries(
-    given: Mapping[str, str], view: View, places: Mapping[str, str]
-) -> tuple[dict[str, Amount], list[str]]:
+def _read_entries(given: Texts, view: View, places: Texts) -> tuple[dict[str, Amount], list[str]]:
     """Return the amounts of entries, estimates last, and remarks on estimates. Raises UserError at
     the place of an entry."""
     amounts: dict[str, Amount] = {}
@@ -275,19 +269,17 @@ def _read_entries(
             amounts[name] = read(name, text, view)
         except UserError as error:
             raise UserError(str(error), places.get(name)) from None
-    return amounts, remarks
+    return {name: a for name, a in amounts.items() if name not in SIZES}, remarks
 
 
-def _nominal_digits(
-    entries: Mapping[str, Amount], values: Mapping[str, float]
-) -> tuple[dict[str, str], list[str]]:
+def _nominal_digits(entries: Amounts, values: Values) -> tuple[dict[str, str], list[str]]:
     """Return the digits of the scene's nominal values for the 1988 program, and a remark on a share
     of the critical friction. Raises UserError."""
-    computed = contact_point(values)
-    for vehicle, course in courses(values).items():  # A faces TA + 180, B faces TB
-        if f"T{vehicle}" in entries.keys() - values.keys():
-            computed[f"T{vehicle}"] = math.remainder(course + 180 * (vehicle == "A"), 360)
     texts = {name: entries[name].typed for name in values if name in SCENE}
+    computed = contact_point(values)
+    for name, course in courses(values).items():  # A faces TA + 180, B faces TB
+        if name in entries.keys() - values.keys():
+            computed[name] = math.remainder(course + 180 * (name == "TA"), 360)
     texts |= {name: to_text(value) for name, value in computed.items()}
     if "MU" not in entries or not entries["MU"].share:
         return texts, []
@@ -300,11 +292,7 @@ def _nominal_digits(
         return texts, []
     share = values["MU"] * (-1 if results["gt"] > 0 else 1)  # line 400 turns it again
     texts["MU"] = to_text(share * critical)
-    percent = f"{100 * abs(share):g} % of the critical friction {abs(critical):.6g}"
-    return texts, [f"MU = {share * critical:.6g} is {percent}"]
-
-
-def _implausible(values: Mapping[str, float], given: Mapping[str, str], view: View) -> list[str]:
-    """Return remarks on implausible values."""
-    remarks = implausible(values, view, courses(values))
-    return [f"{name} = {given[name]}: {words}" for name, is_off, words in remarks if is_off]
+    return texts, [
+        f"MU = {share * critical:.6g} is {100 * abs(share):g} % of the critical friction "
+        f"{abs(critical):.6g}"
+    ]

@@ -9,6 +9,9 @@ from collections.abc import Mapping
 from ..errors import UserError
 from .amounts import Amount
 
+Amounts = Mapping[str, Amount]
+Values = Mapping[str, float]
+
 VECTORS = {
     "SA": ("UX", "UY", "HA"),
     "SB": ("VX", "VY", "HB"),
@@ -24,7 +27,7 @@ _ENOUGH = ({"SA", "SB"}, {"SAF", "SBF"})
 """Velocities along one line, either of which leave the momentum no other direction."""
 
 
-def contact_point(values: Mapping[str, float]) -> dict[str, float]:
+def contact_point(values: Values) -> dict[str, float]:
     """Return DA PA (DB PB) of values that have CAF CAL (CBF CBL) in their place.
 
     Raises
@@ -32,7 +35,7 @@ def contact_point(values: Mapping[str, float]) -> dict[str, float]:
     UserError
         If one of two coordinates is missing, or both pairs are given.
     """
-    result = {}
+    result: dict[str, float] = {}
     for vehicle, pair in OWN_AXES.items():
         own = [values[name] for name in pair if name in values]
         polar = f"D{vehicle}", f"P{vehicle}"
@@ -41,13 +44,16 @@ def contact_point(values: Mapping[str, float]) -> dict[str, float]:
                 f"expected {' and '.join(pair)}, or {' and '.join(polar)} in their place"
             )
         if own:
-            forward, left = own
-            result[polar[0]] = math.hypot(forward, left)
-            result[polar[1]] = math.degrees(math.atan2(left, forward))
+            result.update(zip(polar, _polar(*own), strict=True))
     return result
 
 
-def velocities(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+def _polar(x: float, y: float) -> tuple[float, float]:
+    """Return size and direction in degrees of a vector."""
+    return math.hypot(x, y), math.degrees(math.atan2(y, x))
+
+
+def velocities(values: Values) -> dict[str, tuple[float, float]]:
     """Return the velocities whose directions are known: sizes, NaN where not known, and courses in
     degrees from the x axis. A vehicle at rest has size 0, and the course 0."""
     vectors = {}
@@ -55,21 +61,22 @@ def velocities(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
         if values.get(speed) == 0:
             vectors[speed] = 0.0, 0.0
         elif x in values and y in values:
-            angle = math.degrees(math.atan2(values[y], values[x]))
-            vectors[speed] = math.hypot(values[x], values[y]), angle
+            vectors[speed] = _polar(values[x], values[y])
         elif course in values:
             vectors[speed] = values.get(speed, math.nan), values[course]
     return vectors
 
 
-def courses(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the vehicles' courses before the impact in degrees from the x axis, by "A" and "B",
+def courses(values: Values) -> dict[str, float]:
+    """Return the vehicles' courses before the impact in degrees from the x axis, by "TA" and "TB",
     where they are known and the vehicle moves."""
     vectors = velocities(values)
-    return {speed[1]: vectors[speed][1] for speed in ("SA", "SB") if vectors.get(speed, (0,))[0]}
+    return {
+        f"T{speed[1]}": vectors[speed][1] for speed in ("SA", "SB") if vectors.get(speed, (0,))[0]
+    }
 
 
-def line_of_motion(entries: Mapping[str, Amount]) -> float | None:
+def line_of_motion(entries: Amounts) -> float | None:
     """Return the GA of a contact plane across the line along which both vehicles move.
 
     They do if the directions of both before the impact, or after it, are known exactly, all that

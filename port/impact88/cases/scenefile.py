@@ -4,7 +4,6 @@ The digits of a value stay as they are in the file; TOML's binary numbers are ne
 
 from __future__ import annotations
 
-import datetime
 import json
 import re
 import tomllib
@@ -13,7 +12,7 @@ from typing import NamedTuple
 
 from ..errors import UserError, printable, quoted
 from ..names import CHAPTER, RESULTS, SCENE
-from .units import PLAIN, View
+from .units import View
 
 ABOUT = ("title", "case", "examiner", "date", "units", "axes", "headings", "correlations")
 """Entries about the whole file."""
@@ -46,8 +45,9 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, str]]:
         For text that is not TOML and for values that are neither numbers nor texts.
     """
     if len(text) > MAX_CHARACTERS:
-        fault = f"is longer than {MAX_CHARACTERS:,} characters; expected NAME = VALUE a line"
-        raise UserError(fault, source)
+        raise UserError(
+            f"is longer than {MAX_CHARACTERS:,} characters; expected NAME = VALUE a line", source
+        )
     places = {
         match[1]: f"{source}, line {number}"
         for number, line in enumerate(text.split("\n"), 1)
@@ -56,23 +56,27 @@ def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, str]]:
     try:
         values = tomllib.loads(text, parse_float=str)
     except (RecursionError, ValueError) as error:  # also a whole number of 4,300 digits
-        advice = "expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
-        raise UserError(f"is not TOML: {error}; {advice}", source) from None
+        raise UserError(
+            f"is not TOML: {error}; expected NAME = VALUE, a number with a digit first (0.9) or a "
+            "text in quotes",
+            source,
+        ) from None
     for name, value in values.items():
-        if isinstance(value, bool) or not isinstance(value, str | int | datetime.date):
-            fault = f"{name} = {quoted(value)}: expected a number or a text"
-            raise UserError(fault, places.get(name, source))
+        if isinstance(value, bool | list | dict):
+            raise UserError(
+                f"{name} = {quoted(value)}: expected a number or a text", places.get(name, source)
+            )
     return {name: str(value) for name, value in values.items()}, places
 
 
-def write_toml(texts: Mapping[str, str], view: View = PLAIN) -> str:
+def write_toml(texts: Mapping[str, str], view: View) -> str:
     """Return a commented scene file.
 
     Parameters
     ----------
     texts : mapping of str to str
         Entries as written.
-    view : View, optional
+    view : View
         Its units are those of the comments.
 
     Returns
@@ -106,8 +110,8 @@ class Template(NamedTuple):
     @property
     def entries(self) -> dict[str, str]:
         """The text that each entry begins with, by name."""
-        parts = (word.partition("=") for word in self.words.split())
-        return {name: text for name, _, text in parts}
+        words = self.words.split()
+        return {name: text for name, _, text in (word.partition("=") for word in words)}
 
 
 TEMPLATES = {

@@ -69,8 +69,15 @@ FOOT = Fraction("0.3048")  # m
 POUND = Fraction("0.45359237")  # kg
 GRAVITY = Fraction("9.80665")  # m/s²
 PI = Fraction("3.14159265358979323846264338327950288419716939937510")
-_FACTORS = {"lb": POUND, "g": GRAVITY, "ft": FOOT}
-_FACTORS |= {"per-ft": 1 / FOOT, "per-g": 1 / GRAVITY, "pi": PI, "per-pi": 1 / PI}
+_FACTORS = {
+    "lb": POUND,
+    "g": GRAVITY,
+    "per-g": 1 / GRAVITY,
+    "ft": FOOT,
+    "per-ft": 1 / FOOT,
+    "pi": PI,
+    "per-pi": 1 / PI,
+}
 _BASES = {"us": "chapter", "chapter": "chapter", "metric": "si", "si": "si"}
 """Choices of ``units``, each with the system whose units are its base units."""
 _CHOICES = {"units": _BASES, "axes": ("listing", "sae"), "headings": ("listing", "compass")}
@@ -111,9 +118,11 @@ def unit_of(rule: str, symbol: str) -> Unit:
     quantity."""
     units = _units().get(rule, {})
     if _normalize(symbol) not in units:
-        choices = ", ".join(dict.fromkeys(unit.symbol for unit in units.values()))
         kind = "a ratio" if rule == NUMBER else rule.replace("·", " ")
-        raise UserError(f"{symbol} is not a unit of {kind}; expected {choices}")
+        raise UserError(
+            f"{symbol} is not a unit of {kind}; expected "
+            f"{', '.join(dict.fromkeys(unit.symbol for unit in units.values()))}"
+        )
     return units[_normalize(symbol)]
 
 
@@ -162,12 +171,12 @@ class View:
 
     @classmethod
     def of(cls, **words: str | None) -> View:
-        """Return the view of the words of a file or of options.
+        """Return the view of the entries of a file or of options.
 
         Parameters
         ----------
         **words : str or None
-            ``units``, ``axes``, ``headings``; None or "" for the default.
+            ``units``, ``axes``, ``headings``, None or "" for the default; others do not count.
 
         Raises
         ------
@@ -175,8 +184,8 @@ class View:
             For a word that is not among the choices.
         """
         chosen = {
-            name: re.sub("^listing$", "", (word or "").strip().lower())
-            for name, word in words.items()
+            name: re.sub("^listing$", "", (words.get(name) or "").strip().lower())
+            for name in _CHOICES
         }
         for name, word in chosen.items():
             if word and word not in _CHOICES[name]:
@@ -201,8 +210,7 @@ class View:
     def meaning(self, name: str) -> str:
         """Return the meaning of a quantity in words, with the zero of its direction."""
         zero = "clockwise from north" if self._turns(name) else "from the x axis"
-        meaning: str = quantity(name).meaning.replace("from the x axis", zero)
-        return meaning
+        return str(quantity(name).meaning.replace("from the x axis", zero))
 
     def map(self, name: str, symbol: str = "") -> tuple[Fraction, Fraction]:
         """Return factor and offset of ``base = offset + factor * shown``.

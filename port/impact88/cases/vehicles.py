@@ -23,11 +23,12 @@ from ..decimals import to_text
 from ..errors import UserError
 from ..names import INERTIA, LENGTH, MASS, VELOCITY, quantity
 from .amounts import Amount
+from .motion import Amounts
 from .units import POUND, View
 
 ESTIMATE = "estimate"
-SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
-"""Length and width of each vehicle, for an estimate of its inertia."""
+SIZES = ("LA", "BA", "LB", "BB")
+"""Length and width of each vehicle, for an estimate of its inertia alone."""
 MIN_WEIGHT = 1500  # lb; cars of the fitted sample lie between these two
 MAX_WEIGHT = 6000  # lb
 SLOPE = 1.03  # ft-s² for each lb, as published
@@ -45,7 +46,7 @@ yaw inertia for each kg."""
 MAX_SIDESLIP = 45.0 + 1e-9  # degrees from a course to the heading; rounding may exceed an exact 45
 
 
-def estimate(name: str, text: str, amounts: Mapping[str, Amount], view: View) -> tuple[str, str]:
+def estimate(name: str, text: str, amounts: Amounts, view: View) -> tuple[str, str]:
     """Return the entry of an estimated yaw inertia, of four digits in units of the view, and a
     remark.
 
@@ -66,16 +67,16 @@ def estimate(name: str, text: str, amounts: Mapping[str, Amount], view: View) ->
         Without a mass; without length and width, for the weight of no passenger car, and without
         units.
     """
-    vehicle, pair = name[1], SIZES[name[1]]
-    mass = amounts[f"M{vehicle}"].value if f"M{vehicle}" in amounts else 0.0
+    vehicle = name[1]
+    pair = f"L{vehicle}", f"B{vehicle}"
+    mass = amounts.get(f"M{vehicle}", Amount.exactly(0.0)).value
     sizes = [amounts[size].value for size in pair if size in amounts]
     pounds = round(mass * float(view.base_size(MASS) / POUND), 6)  # 1,500 lb from kg
     if mass > 0 and len(sizes) == 2:
-        value = mass * (sizes[0] ** 2 + sizes[1] ** 2) / 12
+        value = mass * sum(size**2 for size in sizes) / 12
         rule = "mass (length² + width²)/12, a uniform rectangle; 6 to 14 % high on seven cars"
     elif view.units and not sizes and MIN_WEIGHT <= pounds <= MAX_WEIGHT:
-        factor, _ = view.map(name, "lb-ft-s2")
-        value = (SLOPE * pounds - OFFSET) * float(factor)
+        value = (SLOPE * pounds - OFFSET) * float(view.map(name, "lb-ft-s2")[0])
         rule = (
             f"{SLOPE} times the mass in lb, less {OFFSET:.0f} lb-ft-s2, for passenger cars; "
             "6 to 29 % high on seven of them"
@@ -103,7 +104,7 @@ def implausible(
     view : View
         Without units, magnitudes are not looked at.
     courses : mapping of str to float or array
-        The vehicles' courses in degrees, by "A" and "B".
+        The vehicles' courses in degrees, by "TA" and "TB".
     """
     is_body = values.get("M", 6.0) != 4
     for name, value in values.items() if view.units else ():
@@ -116,15 +117,19 @@ def implausible(
             size: Any = abs(value) * float(view.base_size(rule))
             is_off = (size < low) | ((size > high) & (size < inf))
             yield name, is_off & ((rule in (MASS, VELOCITY)) | is_body), words
-    for vehicle, course in courses.items():
-        if f"T{vehicle}" in values:
-            front = values[f"T{vehicle}"] + 180.0 * (vehicle == "A")
+    for name, course in courses.items():
+        if name in values:
+            front = values[name] + 180.0 * (name == "TA")
             sideslip = abs((course - front + 180.0) % 360.0 - 180.0)
-            words = (
-                f"{vehicle} moves more than 45° off the way it faces (A faces TA + 180 and B faces "
+            yield (
+                name,
+                (sideslip > MAX_SIDESLIP) & is_body,
+                f"{name[1]} moves more than 45° off the way it faces (A faces TA + 180 and B faces "
                 "TB in the listing's axes); are velocities and headings in one convention? (axes, "
-                "headings)"
+                "headings)",
             )
-            yield f"T{vehicle}", (sideslip > MAX_SIDESLIP) & is_body, words
-    words = "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1"
-    yield "EM", (values.get("EM", 1.0) == 0) & is_body, words
+    yield (
+        "EM",
+        (values.get("EM", 1.0) == 0) & is_body,
+        "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1",
+    )

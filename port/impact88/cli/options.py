@@ -121,22 +121,24 @@ def changes_of(args: Args) -> dict[str, str]:
     return pairs_of(args.set, "--set", "NAME=VALUE, such as --set MU=.5")
 
 
-def case_of(args: Args) -> Case:
+def case_of(args: Args, is_required: bool = True) -> Case:
     """Return the case that the options give: a file or a published run, changed by ``--set``, or
-    what ``--set`` gives alone. Raises UserError if none or two are given."""
+    what ``--set`` gives alone. Raises UserError if two are given, and if none is that is required.
+    """
     from ..cases.case import Case
     from ..cases.units import View
     from ..program.scene import sample
 
     if args.file and args.sample:
         raise UserError("a file and --sample are both given; expected one of them")
+    view = View.of(units=args.units)
     if args.sample:
         scene = sample(int(args.sample))
         case = Case.of({**scene, "title": scene.title, "units": "chapter"}, scene.source)
     elif args.file:
-        case = Case.load(args.file, units=args.units)
-    elif args.set:
-        case = Case.of({}, "--set", View.of(units=args.units))
+        case = Case.load(args.file, view)
+    elif args.set or not is_required:
+        case = Case.of({}, "--set", view)
     else:
         raise UserError("no collision is given; expected a FILE.toml, --sample N, or --set")
     return case.with_("--set", **changes_of(args))

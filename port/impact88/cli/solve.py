@@ -69,29 +69,25 @@ def main(args: Args) -> int:
 
 def _solve_table(args: Args, is_table: bool) -> int:
     """Solve each row of a table, or of a case that is swept."""
-    from ..cases.case import Case
-    from ..cases.units import View
-    from ..tables.solving import solve_table
+    from ..tables.solving import Solver
     from ..tables.sweeping import sweep_table
 
     if args.json or args.full or (is_table and args.sweep):
         raise UserError("--json, --full and --sweep are for a FILE.toml, not for a table")
-    table, view = args.file, View.of(units=args.units)
+    table = args.file
     if is_table:
         args.file = args.scene
-    is_case = args.file or args.sample or args.set
-    case = case_of(args) if is_case or not is_table else Case.of({}, view=view)
+    case = case_of(args, not is_table)
     ranges = pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT")
-    results = solve_table(
+    solver = Solver(
         table if is_table else sweep_table(case, ranges),
-        args.output,
+        case,
         names_of(args.results, RESULTS, "--results"),
-        case=case,
-        replaced=[*changes_of(args)] if is_table else (),
+        replaced=changes_of(args) if is_table else (),
         arithmetic=args.arithmetic or "float64",
         results_only=args.results_only,
-        progress=show_progress,
     )
-    remarks = dict.fromkeys([*case.remarks, *results.remarks])
-    say("solve", [*remarks, *results.listed])
-    return int(bool(results.bad or results.ended))
+    solver.write(args.output, show_progress)
+    remarks = dict.fromkeys([*case.remarks, *solver.remarks()])
+    say("solve", [*remarks, *solver.listed])
+    return int(bool(solver.bad or solver.ended))

@@ -60,10 +60,11 @@ def read_table(table: Any) -> Columns:
 
 
 def _read_file(path: str) -> Columns:
-    blocks = [block.columns for block in tables.read_table(path, digits=True).blocks]
+    table = tables.read_table(path, digits=True)
+    columns = zip(*(block.columns for block in table.blocks), strict=True)
     return {
-        name: np.concatenate([np.asarray(block[name]) for block in blocks])
-        for name in (blocks[0] if blocks else ())
+        name: np.concatenate([*map(np.asarray, parts)])
+        for name, parts in zip(table.names, columns, strict=False)
     }
 
 

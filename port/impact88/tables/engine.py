@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import IO
 
 from ..errors import UserError
 from ..files import replacing
 from .polarsformats import read_excel, read_parquet, write_excel, write_parquet
-from .textformats import Column, Table, read_csv, read_json, write_csv, write_json
+from .textformats import (
+    Columns,
+    Table,
+    check_headings,
+    read_csv,
+    read_json,
+    write_csv,
+    write_json,
+)
 
-_Writer = Callable[[IO[bytes], Iterable[Mapping[str, Column]]], None]
+_Format = tuple[Callable[[str], Table], Callable[[IO[bytes], Iterable[Columns]], None]]
 
-_FORMATS: dict[str, tuple[Callable[[str], Table], _Writer]] = {
+_FORMATS: dict[str, _Format] = {
     **dict.fromkeys((".csv", ".tsv", ".txt"), (read_csv, write_csv)),
     **dict.fromkeys((".jsonl", ".ndjson"), (read_json, write_json)),
     ".parquet": (read_parquet, write_parquet),
@@ -24,7 +32,7 @@ _FORMATS: dict[str, tuple[Callable[[str], Table], _Writer]] = {
 """Reader and writer by the ending of a file's name."""
 
 
-def _format_of(path: str) -> tuple[Callable[[str], Table], _Writer]:
+def _format_of(path: str) -> _Format:
     """Return reader and writer of a file: CSV for a standard stream. Raises UserError."""
     ending = ".csv" if path == "-" else Path(path).suffix.lower()
     if ending not in _FORMATS:
@@ -53,10 +61,11 @@ def read_table(path: str, digits: bool = False) -> Table:
         For a file that cannot be read as a table, here or in its blocks.
     """
     reader, _ = _format_of(path)
-    return read_json(path, str) if digits and reader is read_json else reader(path)
+    table = read_json(path, digits) if reader is read_json else reader(path)
+    return table._replace(names=check_headings(table.names, table.where))
 
 
-def write_table(path: str, blocks: Iterable[Mapping[str, Column]]) -> None:
+def write_table(path: str, blocks: Iterable[Columns]) -> None:
     """Write blocks of rows as a table, whole or not at all.
 
     Parameters

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import os
 import zipfile
-from collections.abc import Iterable, Mapping
-from itertools import count
+from collections.abc import Iterable, Iterator
 from typing import IO, Any
-
-import numpy as np
 
 from ..errors import UserError, library
 from ..files import decoding
-from .textformats import BLOCK_ROWS, Block, Column, Table, check_headings, heading_name
+from .textformats import BLOCK_ROWS, Block, Column, Columns, Table, heading_name
 
 MAX_BYTES = 256_000_000  # that a file may decode to, or `MAX_RATIO` times its own size
 MAX_RATIO = 20
@@ -37,21 +34,16 @@ def read_parquet(path: str) -> Table:
     with decoding(path, "is not a Parquet file"):
         lazy = pl.scan_parquet(path, glob=False)
         _check_size(path, 8 * lazy.select(pl.len()).collect().item() * len(lazy.collect_schema()))
-        return _table_of(lazy.collect(), path, 1)
+        frame = lazy.collect()
+    return Table(frame.columns, _blocks(frame, 1), path)
 
 
-def _table_of(frame: Any, path: str, first: int) -> Table:
-    """Return a frame as a table whose first row has a number: numbers as doubles, and all else as
+def _blocks(frame: Any, first: int) -> Iterator[Block]:
+    """Yield a frame whose first row has a number as blocks: numbers as doubles, and all else as
     texts."""
-    names = check_headings(frame.columns, path)
-    parts = zip(count(first, BLOCK_ROWS), frame.iter_slices(BLOCK_ROWS), strict=False)
-    blocks = (
-        Block(
-            dict(zip(names, map(_column, part), strict=True)), range(number, number + part.height)
-        )
-        for number, part in parts
-    )
-    return Table(names, blocks, path)
+    for start in range(0, frame.height, BLOCK_ROWS):
+        part = frame.slice(start, BLOCK_ROWS)
+        yield Block([*map(_column, part)], range(first + start, first + start + part.height))
 
 
 def _column(series: Any) -> Column:
@@ -77,18 +69,18 @@ def read_excel(path: str) -> Table:
             book.load_sheet(0, header_row=None, dtypes=kind, dtype_coercion="coerce").to_polars()
             for kind in ("float", "string")
         )
-    rows = [[cell or "" for cell in row] for row in texts.head(MAX_HEADING_ROW).rows()]
-    places = (at for at, row in enumerate(rows) if any(heading_name(cell)[0] for cell in row))
-    place = next(places, None)
-    if place is None:
+    for first, row in enumerate(texts.head(MAX_HEADING_ROW).rows(), 1):
+        names = [cell or "" for cell in row]
+        if any(heading_name(name)[0] for name in names):
+            cells = numbers[first:], texts[first:]
+            break
+    else:
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
-    headings = rows[place]
-    while not headings[-1].strip():
-        headings.pop()
-    names = check_headings(headings, path)
-    columns = zip(names, numbers[place + 1 :], texts[place + 1 :], strict=False)
-    frame = polars().DataFrame({name: _merge_cells(*cells) for name, *cells in columns})
-    return _table_of(frame, path, place + 2)
+    while not names[-1].strip():
+        names.pop()
+    columns = zip(names, *cells, strict=False)
+    frame = polars().DataFrame([_merge_cells(*column) for _, *column in columns])
+    return Table(names, _blocks(frame, first + 1), path)
 
 
 def _merge_cells(numbers: Any, texts: Any) -> Any:
@@ -98,24 +90,23 @@ def _merge_cells(numbers: Any, texts: Any) -> Any:
     return numbers.cast(str).fill_null(texts)
 
 
-def frame_of(columns: Mapping[str, Column]) -> Any:
+def frame_of(columns: Columns) -> Any:
     """Return columns as a frame; a number that is none is null, and so is an empty text, which
     polars would put in quotes."""
     series = []
     for name, column in columns.items():  # expressions hang after a damaged Parquet file
-        is_float = isinstance(column, np.ndarray) and column.dtype.kind == "f"
-        is_series = isinstance(column, polars().Series)
-        cells = column if is_float or is_series else [None if x == "" else x for x in column]
-        series.append(polars().Series(name, cells, strict=False, nan_to_null=is_float))
+        is_list = isinstance(column, list)
+        cells = [None if cell == "" else cell for cell in column] if is_list else column
+        series.append(polars().Series(name, cells, strict=False, nan_to_null=not is_list))
     return polars().DataFrame(series)
 
 
-def write_parquet(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
+def write_parquet(file: IO[bytes], blocks: Iterable[Columns]) -> None:
     """Write blocks as Parquet."""
     _concatenate(blocks).write_parquet(file)
 
 
-def write_excel(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:
+def write_excel(file: IO[bytes], blocks: Iterable[Columns]) -> None:
     """Write blocks as a workbook; texts that begin with = stay texts. Raises UserError for more
     rows than a sheet has."""
     library("xlsxwriter", "tables", "an .xlsx")
@@ -125,6 +116,6 @@ def write_excel(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None
     frame.write_excel(file, autofilter=False)
 
 
-def _concatenate(blocks: Iterable[Mapping[str, Column]]) -> Any:
+def _concatenate(blocks: Iterable[Columns]) -> Any:
     """Return blocks as one frame."""
     return polars().concat(map(frame_of, blocks), how="vertical_relaxed")

@@ -7,9 +7,8 @@ columns, by the affine map of each heading; any other row is read as a `Case`.
 from __future__ import annotations
 
 import math
-from collections import Counter
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -25,7 +24,7 @@ from ..mechanics.solve import evaluate, solve
 from ..names import RESULTS, SCENE, check_names
 from ..status import Status
 from .engine import is_csv, read_table, write_table
-from .textformats import Block, Column, Table, heading_name
+from .textformats import Block, Column, Columns, Table, heading_name
 
 Floats = NDArray[np.float64]
 
@@ -41,14 +40,28 @@ _EMPTY = {"ERROR": "", "LINE": 0, "STATUS": Status.NOT_FINITE}
 """Results of a row that cannot be used; others are NaN."""
 
 
-@dataclass
-class Solved:
-    """Counts of a table's rows, and what to say of them.
+class Solver:
+    """The rows of a table, solved a block at a time.
+
+    Parameters
+    ----------
+    source : str or Table
+        The file, ``-`` for standard input; or a table of `sweeping`.
+    case : Case
+        Values for the columns that the table lacks; its view is that of columns that name no units.
+    results : sequence of str, optional
+        Names of the results, all by default.
+    replaced : collection of str, optional
+        Names whose values in ``case`` take the place of the table's columns.
+    arithmetic : {"float64", "applesoft"}, default "float64"
+        Double precision, or the 1988 program's with two more columns, ERROR and LINE.
+    results_only : bool, default False
+        Leave the scene's columns out.
 
     Attributes
     ----------
     rows : int
-        Rows solved or not.
+        Rows so far, solved or not.
     bad : int
         Rows that could not be used.
     ended : int
@@ -56,202 +69,164 @@ class Solved:
     listed : list of str
         The first of the bad rows, each with its place and the reason; at the end how many there
         are, if they are more.
-    remarks : list of str
-        What is implausible.
-    """
-
-    rows: int = 0
-    bad: int = 0
-    ended: int = 0
-    listed: list[str] = field(default_factory=list)
-    remarks: list[str] = field(default_factory=list)
-
-
-def solve_table(
-    source: str | Table,
-    target: str,
-    results: Sequence[str] = (),
-    *,
-    case: Case | None = None,
-    replaced: Collection[str] = (),
-    arithmetic: str = "float64",
-    results_only: bool = False,
-    progress: Callable[[int, float | None], None] | None = None,
-) -> Solved:
-    """Solve each row of a table, and write the table with its results.
-
-    Parameters
-    ----------
-    source : str or Table
-        The file, ``-`` for standard input; or a table of `sweeping`.
-    target : str
-        The file to write, ``-`` for standard output.
-    results : sequence of str, optional
-        Names of the results, all by default.
-    case : Case, optional
-        Values for the columns that the table lacks; its view is that of columns that name no units.
-    replaced : collection of str, optional
-        Names whose values in ``case`` take the place of the table's columns.
-    arithmetic : {"float64", "applesoft"}, default "float64"
-        Double precision, or the 1988 program's with two more columns, ERROR and LINE.
-    results_only : bool, default False
-        Leave the scene's columns out.
-    progress : callable, optional
-        Called with the number of rows done, and the fraction of the file read if that is known.
-
-    Returns
-    -------
-    Solved
-        Counts, bad rows and remarks.
 
     Raises
     ------
     UserError
-        For a file that is no table, lacks a column, or cannot be written.
-    """
-    as_text = is_csv(target)
-    if isinstance(source, str):
-        source = read_table(source, arithmetic == "applesoft")
-    solver = Solver(source, results, case, replaced, arithmetic, as_text, results_only)
-    solved = solver.solved
-    extent, position = source.extent
-
-    def blocks() -> Iterator[Mapping[str, Column]]:
-        for block in source.blocks:
-            yield solver.solve(block)
-            if progress:
-                progress(solved.rows, position() / extent if extent else None)
-        if not solved.rows:
-            yield solver.solve(Block({name: [] for name in source.names}, []))
-
-    write_table(target, blocks())
-    solved.remarks += solver.remarks()
-    if solved.bad > len(solved.listed):
-        solved.listed.append(f"{solved.bad:,} rows could not be used, these first")
-    return solved
-
-
-class Solver:
-    """The computation of a table's results, a block at a time.
-
-    Parameters
-    ----------
-    table : Table
-        The table.
-    results, case, replaced, arithmetic, results_only
-        As for `solve_table`.
-    as_text : bool
-        Keep the scene's columns as they are in the file; else as numbers.
-
-    Attributes
-    ----------
-    solved : Solved
-        Counts so far.
+        For a file that is no table, or lacks a column.
     """
 
     def __init__(
         self,
-        table: Table,
+        source: str | Table,
+        case: Case,
         results: Sequence[str] = (),
-        case: Case | None = None,
         replaced: Collection[str] = (),
         arithmetic: str = "float64",
-        as_text: bool = True,
         results_only: bool = False,
     ) -> None:
-        self.table, self.as_text, self.results_only = table, as_text, results_only
-        self.solved = Solved()
         self.is_applesoft = arithmetic == "applesoft"
+        self.results_only = results_only
+        self.rows = self.bad = self.ended = 0
+        self.listed: list[str] = []
+        self._remarks: dict[str, tuple[str, int]] = {}
         allowed = APPLESOFT_RESULTS if self.is_applesoft else tuple(RESULTS)
         check_names(results, allowed, f"result of --arithmetic {arithmetic}", "--results")
         self.results = tuple(results) or allowed
-        self.case = case = case or Case.of({})
-        headings = read_headings(table.names, table.where)
-        self.headings = {name: headings[name] for name in SCENE if name in headings}
+        if isinstance(source, str):
+            source = read_table(source, self.is_applesoft)
+        self.table = source
+        self.case = case
+        headings = read_headings(source.names, source.where)
+        self.headings = {n: headings[n] for n in SCENE if n in headings}
         try:
             self.maps = {n: case.view.map(n, unit) for n, (_, unit) in self.headings.items()}
         except UserError as error:
-            raise UserError(str(error), table.where) from None
-        self.columns = {*self.headings} - ({*replaced} & {*case.entries})
-        known = self.columns | {*case.derived}
-        self.constants = {n: x for n, x in case.numbers.items() if n not in known}
+            raise UserError(str(error), source.where) from None
+        fixed = {*replaced} & {*case.entries}
+        self.columns = [name for name in self.headings if name not in fixed]
+        known = {*self.columns, *case.derived}
+        self.constants = {n: float(x) for n, x in case.texts.items() if n not in known}
         known.update(self.constants)
-        if "M" in self.columns or self.constants.get("M") == 4:
+        if "M" in self.columns:
             known.update(POINT_DEFAULTS)  # rows of bodies that lack them are bad
         if absent := " ".join(name for name in SCENE if name not in known):
             message = f"no column {absent}; --set NAME=VALUE gives one for all rows"
-            raise UserError(message, table.where)
-        self._remarks: dict[str, str] = {}
-        self._counts: Counter[str] = Counter()
+            raise UserError(message, source.where)
+
+    def write(self, target: str, progress: Callable[[int, None], None] | None = None) -> None:
+        """Solve the rows, and write the table with its results.
+
+        Parameters
+        ----------
+        target : str
+            The file to write, ``-`` for standard output.
+        progress : callable, optional
+            Called with the number of rows done, and None for the fraction, which is not known.
+
+        Raises
+        ------
+        UserError
+            For a file that cannot be written, and for rows that are not as wide as the headings.
+        """
+        as_text = is_csv(target)
+
+        def blocks() -> Iterator[Columns]:
+            for block in self.table.blocks:
+                yield self.solve(block, as_text)
+                if progress:
+                    progress(self.rows, None)
+            if not self.rows:
+                yield self.solve(Block([[] for _ in self.table.names], []), as_text)
+
+        write_table(target, blocks())
+        if self.bad > len(self.listed):
+            self.listed.append(f"{self.bad:,} rows could not be used, these first")
 
     def remarks(self) -> list[str]:
-        """Return the remarks on all rows so far."""
-        more = {name: count - 1 for name, count in self._counts.items() if count > 1}
+        """Return what is implausible in the rows so far, the first by name with their number."""
         return [
-            f"{text} ({more[name]:,} rows more)" if name in more else text
-            for name, text in self._remarks.items()
+            f"{text} ({count - 1:,} rows more)" if count > 1 else text
+            for text, count in self._remarks.values()
         ]
 
-    def solve(self, block: Block) -> dict[str, Column]:
-        """Return a block with its results."""
-        rows = self._read(block)
-        results = self._replay(rows) if self.is_applesoft else self._solve(rows)
-        self._remark(rows)
+    @np.errstate(all="ignore")
+    def solve(self, block: Block, as_text: bool = True) -> dict[str, Column]:
+        """Return a block with its results.
+
+        Parameters
+        ----------
+        block : Block
+            Rows of the table.
+        as_text : bool, default True
+            Keep the scene's columns as they are in the file; else as numbers where they have no
+            texts.
+        """
+        columns = dict(zip(self.table.names, block.columns, strict=True))
+        rows = self._read(columns, block.rows)
+        facts, _ = evaluate(rows.values, ["fit", "HA", "HB"])
+        if self.is_applesoft:
+            results = self._replay(rows)
+        else:
+            for at in np.flatnonzero(facts["fit"] == 0).tolist():
+                rows.bad.setdefault(at, f"{self.table.place(block.rows[at])}: {UNUSABLE}")
+            results = solve(rows.values, self.results)
+        self._remark(rows, {"TA": facts["HA"], "TB": facts["HB"]})
         bad = sorted(rows.bad)
         for name, values in results.items():
             values[bad] = _EMPTY.get(name, math.nan)
-        self.solved.rows += len(block.rows)
-        self.solved.bad += len(bad)
-        self.solved.listed += [rows.bad[at] for at in bad[: MAX_LISTED - len(self.solved.listed)]]
-        if self.is_applesoft:
-            self.solved.ended += int(np.sum(~np.isin(results["ERROR"], ["", ZERO_DETERMINANT])))
-        columns: dict[str, Column] = {}
-        for heading, column in block.columns.items():
-            name, _ = heading_name(heading)
-            if name not in SCENE:
-                columns[heading] = column
-            elif not self.results_only:
-                columns[heading] = self._output_column(rows, name)
+        self.rows += len(block.rows)
+        self.bad += len(bad)
+        self.listed += [rows.bad[at] for at in bad[: MAX_LISTED - len(self.listed)]]
+        for name, (heading, _) in self.headings.items():
+            if self.results_only:
+                del columns[heading]
+            else:
+                columns[heading] = self._output_column(rows, name, as_text)
         view = self.case.view
         for name, values in results.items():
-            is_result = name in RESULTS
-            columns[view.heading(name) if is_result else name] = (
-                view.shown(name, values) if is_result else values
-            )
+            if name in RESULTS:
+                columns[view.heading(name)] = view.shown(name, values)
+            else:
+                columns[name] = values.tolist()
         return columns
 
-    def _read(self, block: Block) -> _Rows:
+    def _remark(self, rows: _Rows, courses: Mapping[str, Floats]) -> None:
+        """Count the rows with implausible values."""
+        for name, where, words in implausible(rows.values, self.case.view, courses):
+            places = np.flatnonzero(where).tolist()
+            if places and name in rows.cells:
+                place = self.table.place(rows.numbers[places[0]])
+                text = f"{place}: {name} = {rows.cells[name][places[0]]}: {words}"
+                text, count = self._remarks.get(name, (text, 0))
+                self._remarks[name] = text, count + len(places)
+
+    def _read(self, columns: Columns, numbers: Sequence[int]) -> _Rows:
         """Return the rows of a block: as columns of numbers, and as cases where a row has anything
         else."""
-        cells = {name: block.columns[self.headings[name][0]] for name in self.columns}
-        shown = {name: plain_numbers(column) for name, column in cells.items()}
-        values = {n: np.full(len(block.rows), self.constants.get(n, math.nan)) for n in SCENE}
-        for name, numbers in shown.items():
+        cells = {name: columns[self.headings[name][0]] for name in self.columns}
+        values = {n: np.full(len(numbers), self.constants.get(n, math.nan)) for n in SCENE}
+        is_other = np.full(len(numbers), len(cells) + len(self.constants) < len(SCENE))
+        for name, column in cells.items():
             factor, offset = map(float, self.maps[name])
-            values[name] = offset + factor * numbers
-        is_other = np.zeros(len(block.rows), bool)
-        for name in SCENE:
-            if name not in self.constants:
-                is_other |= ~np.isfinite(values[name])
-        if self.is_applesoft:
-            for column in cells.values():
-                lengths = enumerate(map(len, map(str, column)))
-                is_other[[at for at, length in lengths if length > MAX_LENGTH]] = True
-        rows = _Rows(block.rows, cells, shown, values, {}, {})
+            values[name] = offset + factor * plain_numbers(column)
+            is_other |= ~np.isfinite(values[name])
+            if self.is_applesoft:
+                is_other |= np.array([len(str(cell)) > MAX_LENGTH for cell in column], bool)
+        rows = _Rows(numbers, cells, values, {}, {})
         for at in np.flatnonzero(is_other).tolist():
             try:
-                rows.cases[at] = self._read_row(rows, at)
+                rows.texts[at] = self._row_texts(cells, at, self.table.place(numbers[at]))
             except UserError as error:
                 rows.bad[at] = str(error)
-        for at, case in rows.cases.items():
-            for name, text in case.texts.items():
+                continue
+            for name, text in rows.texts[at].items():
                 values[name][at] = float(text)
         return rows
 
-    def _read_row(self, rows: _Rows, at: int) -> Case:
-        """Return a row as a case. Raises UserError."""
-        where = self.table.place(rows.numbers[at])
-        cells = {n: _entry(column[at], self.headings[n][1]) for n, column in rows.cells.items()}
+    def _row_texts(self, columns: Columns, at: int, where: str) -> Mapping[str, str]:
+        """Return the digits of a row that is read as a case. Raises UserError."""
+        cells = {n: _entry(column[at], self.headings[n][1]) for n, column in columns.items()}
         case = Case.of({**self.case.written, **cells}, where, self.case.view)
         for name in SCENE:
             if name not in case.texts:
@@ -260,76 +235,57 @@ class Solver:
                 raise UserError(f"{name} = {quoted(cells[name])}: expected one number", where)
             if self.is_applesoft and case.texts[name] == "INF":
                 raise UserError(f"{name} = inf cannot be typed; expected a number", where)
-        return case
-
-    def _solve(self, rows: _Rows) -> dict[str, NDArray[Any]]:
-        """Return the results in double precision."""
-        usable, _ = evaluate(rows.values, "fit")
-        for at in np.flatnonzero(usable["fit"] == 0).tolist():
-            rows.bad.setdefault(at, f"{self.table.place(rows.numbers[at])}: {UNUSABLE}")
-        return solve(rows.values, self.results)
+        return case.texts
 
     def _replay(self, rows: _Rows) -> dict[str, NDArray[Any]]:
         """Return the results of the 1988 arithmetic."""
         from ..program.replay import replay
 
-        outcome = replay({name: self._texts(rows, name) or ["6"] for name in SCENE})
-        results = {name: outcome.floats(name) for name in self.results}
+        outcome = replay({name: self._typed(rows, name) for name in SCENE})
+        self.ended += int(np.count_nonzero(np.delete(outcome.error, [*rows.bad])))
+        results: dict[str, NDArray[Any]] = {name: outcome.floats(name) for name in self.results}
         results["ERROR"] = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
         results["LINE"] = np.array(outcome.line)
-        return {name: values[: len(rows.numbers)] for name, values in results.items()}
+        return results
 
-    def _texts(self, rows: _Rows, name: str) -> list[str]:
+    def _typed(self, rows: _Rows, name: str) -> list[str]:
         """Return a column as the digits typed into the 1988 program."""
         texts = [self.case.texts.get(name, "6")] * len(rows.numbers)
         if name in rows.cells:
             factor, offset = self.maps[name]
             texts = [_entry(cell, "").upper() for cell in rows.cells[name]]
-            for at in (*rows.cases, *rows.bad):
+            for at in (*rows.texts, *rows.bad):
                 texts[at] = "6"
             if factor != 1 or offset:
                 texts = [_base_digits(text, factor, offset) for text in texts]
-        for at, case in rows.cases.items():
-            texts[at] = case.texts[name]
+        for at, digits in rows.texts.items():
+            texts[at] = digits[name]
         return texts
 
-    @np.errstate(all="ignore")
-    def _remark(self, rows: _Rows) -> None:
-        """Count the rows with implausible values."""
-        courses, _ = evaluate(rows.values, ["HA", "HB"])
-        by_vehicle = {name[1]: angles for name, angles in courses.items()}
-        for name, where, words in implausible(rows.values, self.case.view, by_vehicle):
-            places = np.flatnonzero(where)
-            if places.size and name in rows.cells:
-                place = self.table.place(rows.numbers[places[0]])
-                text = f"{place}: {name} = {rows.cells[name][int(places[0])]}: {words}"
-                self._remarks.setdefault(name, text)
-                self._counts[name] += places.size
-
-    def _output_column(self, rows: _Rows, name: str) -> Column:
+    def _output_column(self, rows: _Rows, name: str, as_text: bool) -> Column:
         """Return a column of the scene for the output: as it is in the file if it has texts."""
         if name not in rows.cells:
             factor, offset = map(float, self.maps[name])
             return (rows.values[name] - offset) / factor
-        column, numbers = rows.cells[name], rows.shown[name]
+        column = rows.cells[name]
+        if as_text:
+            return column
+        numbers = plain_numbers(column)
         others = np.flatnonzero(~np.isfinite(numbers)).tolist()
-        has_texts = self.as_text or any(_entry(column[at], "") for at in others)
-        return column if has_texts else numbers
+        return column if any(_entry(column[at], "") for at in others) else numbers
 
 
 class _Rows(NamedTuple):
     """The rows of one block.
 
-    ``numbers``: their lines; ``cells``: the columns of the scene as in the file, ``shown``: as
-    numbers, NaN for anything else; ``values``: in base units along the listing's axes; ``cases``:
-    the rows read as cases; ``bad``: the reasons of the rows that cannot be used; both by place in
-    the block."""
+    ``numbers``: their lines; ``cells``: the columns of the scene as in the file; ``values``: in
+    base units along the listing's axes; ``texts``: the digits of the rows read as cases; ``bad``:
+    the reasons of the rows that cannot be used; both by place in the block."""
 
     numbers: Sequence[int]
     cells: dict[str, Column]
-    shown: dict[str, Floats]
     values: dict[str, Floats]
-    cases: dict[int, Case]
+    texts: dict[int, Mapping[str, str]]
     bad: dict[int, str]
 
 
@@ -338,8 +294,9 @@ def _entry(cell: Any, unit: str) -> str:
     if cell is None or cell != cell:
         return ""
     text = to_text(float(cell)) if isinstance(cell, float) else str(cell).strip()
-    has_unit = any(character.isalpha() or character in "%°" for character in text)
-    return f"{text} {unit}" if unit and text and (is_number(text) or not has_unit) else text
+    if unit and text and (is_number(text) or not re.search(r"[^\W\d_]|[%°]", text)):
+        return f"{text} {unit}"
+    return text
 
 
 def plain_numbers(column: Column) -> Floats:

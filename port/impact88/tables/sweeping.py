@@ -42,7 +42,7 @@ def sweep_table(case: Case, ranges: Mapping[str, str]) -> Table:
     if prod(map(len, values.values())) > MAX_SCENES:
         raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
     rows = enumerate(product(*values.values()), 1)
-    return Table([*values], blocks_of([*values], rows), case.source)
+    return Table([*values], blocks_of(rows), case.source)
 
 
 def _values(name: str, text: str) -> list[str]:
@@ -53,8 +53,8 @@ def _values(name: str, text: str) -> list[str]:
             raise ValueError
         values = np.linspace(to_double(low), to_double(high), int(count))
     except ValueError:
-        fault = (
-            f"{name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51, in units of the file"
-        )
-        raise UserError(fault, "--sweep") from None
+        raise UserError(
+            f"{name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51, in units of the file",
+            "--sweep",
+        ) from None
     return [to_text(value) for value in values.tolist()]
