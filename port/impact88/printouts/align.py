@@ -45,7 +45,7 @@ def glyph_cost(cell: Cell, char: str) -> float:
         The cost, 0 for the printed character, or for one of a number in a slot.
     """
     if cell.kind == "between":
-        return UNPAIRED + ALIKE * char.isdigit()  # a digit is rather a number's
+        return UNPAIRED
     if cell.kind == "slot":
         if char in NUMBER_CHARS or (cell.name.startswith("REPLY") and char in ",;"):
             return 0.0
@@ -70,7 +70,7 @@ class Aligner:
         self.cells = cells
         lost = [0.0 if cell.kind == "between" else UNPAIRED for cell in cells]
         self.lost_sums = np.cumsum([0.0, *lost])
-        self.own_gaps = np.array([_own_gaps(cells, j) for j in range(len(cells))])
+        self.own_gaps = np.array([*map(_own_gaps, cells)])
         self.added_gaps = np.array([[0.0] * 4, *map(_added_gaps, cells)])
         self._costs: dict[str, tuple[Costs, Costs]] = {}
 
@@ -78,12 +78,11 @@ class Aligner:
         """Return the costs of a character in each cell, and of it added after each."""
         if char not in self._costs:
             costs = [glyph_cost(cell, char) for cell in self.cells]
-            outside = UNPAIRED + ALIKE * char.isdigit()
             extra = [
-                WRONG + ALIKE * char.isdigit() if cell.kind == "word" else cost
+                WRONG if cell.kind == "word" else cost
                 for cell, cost in zip(self.cells, costs, strict=True)
             ]
-            extra[-1] = min(extra[-1], outside)
+            extra[-1] = min(extra[-1], UNPAIRED)
             self._costs[char] = np.array(costs), np.array([UNPAIRED, *extra])
         return self._costs[char]
 
@@ -122,15 +121,11 @@ class Aligner:
         return places[::-1]
 
 
-def _own_gaps(cells: Sequence[Cell], j: int) -> list[float]:
+def _own_gaps(cell: Cell) -> list[float]:
     """Return the cost of each width of gap before a glyph in a cell."""
-    cell = cells[j]
-    if cell.kind != "word":
+    if cell.kind != "word" or cell.first:
         return [0.0, 0.0, 0.0, 0.0]
-    if not cell.first:
-        return [0.0, ALIKE, ALIKE, WRONG]
-    is_after_number = cell.char.isalpha() and j > 0 and cells[j - 1].kind == "slot"
-    return [UNPAIRED * is_after_number, 0.0, 0.0, 0.0]
+    return [0.0, ALIKE, ALIKE, WRONG]
 
 
 def _added_gaps(cell: Cell) -> list[float]:

@@ -9,10 +9,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .costs import ALIKE, SLIGHT, UNPAIRED, WRONG
+from .costs import ALIKE, SLIGHT, WRONG
 from .glyphs import LINE_GAP, LOOKALIKES, WIDE_GAP, Glyph, chars_of, split_at_gaps
-from .page import ASTERISKS, CELLS, ROWS
+from .page import CELLS, ROWS
 
 
 class Label(NamedTuple):
@@ -45,7 +46,7 @@ class Anchor(NamedTuple):
     label : Label
         The label of the page.
     read : str
-        The label that was read, which may be another.
+        The label that was read, which may be another; "" if a note beside it has the same.
     start, stop : int
         Its glyphs.
     """
@@ -70,12 +71,12 @@ LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
 """The labels of each row."""
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
 LABEL = re.compile("|".join(map(re.escape, _TEXTS)))
-CLOSED = re.compile(r"[-+.E0-9]{1,14}\)")
-"""The number of a label in brackets."""
 WORDS = re.compile("[A-Z]{3}")
-_BACK = -np.subtract.outer(np.arange(len(LABELS)), np.arange(len(LABELS)))
-_STEPS = np.where(_BACK > 0, SLIGHT * (_BACK - 1), WRONG - SLIGHT * _BACK + ALIKE * (_BACK == 0))
-"""Cost of each label (column) after each other (row)."""
+_AHEAD = np.subtract.outer(np.arange(len(LABELS) + 1), np.arange(len(LABELS) + 1)).T
+_STEPS = np.where(
+    _AHEAD > 0, SLIGHT * (_AHEAD - 1), WRONG - SLIGHT * _AHEAD + ALIKE * (_AHEAD == 0)
+)
+"""Cost of each label (column) after each other (row); the first is none, before the page."""
 
 
 def find_labels(glyphs: Sequence[Glyph]) -> list[tuple[str, int, int]]:
@@ -104,69 +105,64 @@ def is_note(line: Sequence[Glyph]) -> bool:
 
 
 def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
-    """Return the anchors of a page, without the labels of notes.
+    """Return the labels that were read where they are on the page, without those of notes.
 
-    Without the label of a note the others are in better order: by a label out of order, or by half
-    of that for the single one in a line with words. One in another's place leaves that one lost.
+    The cheapest way to place labels on the page (Viterbi, 1967). A label that two rows have is that
+    of the row in order; one in another's place is that one. A label is a note's where leaving it
+    out costs less: as much as one out of order, or half of that for the single one of a line. Of
+    equal ways that which leaves out the last. One beside such a note with the same label is not
+    read exactly: either may be the note.
     """
     labels = find_labels(glyphs)
-    cost, anchors = _order(glyphs, labels)
-    start = 0
+    limits: list[float] = []
     for line in split_at_gaps(glyphs, LINE_GAP):
-        stop = start + len(line)
-        limit = WRONG / 2 if is_note(line) else WRONG
-        for note in [label for label in reversed(labels) if start <= label[1] < stop]:
-            further = [label for label in labels if label != note]
-            if cost > limit and note[0].endswith("=") and _order(glyphs, further)[0] < cost - limit:
-                labels = further
-                cost, anchors = _order(glyphs, labels)
-        start = stop
-    return anchors
-
-
-def _order(
-    glyphs: Sequence[Glyph], labels: Sequence[tuple[str, int, int]]
-) -> tuple[float, list[Anchor]]:
-    """Return the cheapest way to place labels on the page, and its cost (Viterbi, 1967).
-
-    A label that two rows have is that of the row in order; one in another's place is that one. Two
-    labels beside each other that were exchanged are each in the other's place.
-    """
-    costs = SLIGHT * np.arange(len(LABELS))
+        limits += [WRONG / (2 if len(find_labels(line)) == 1 else 1)] * len(line)
+    sums = np.append(0.0, np.full(len(LABELS), np.inf))
     ways = []
-    sums = costs
-    chars = chars_of(glyphs)
-    for text, start, stop in labels:
-        is_bracketed = chars[:start].endswith("(") or bool(CLOSED.match(chars, stop))
-        sums = costs + [_label_cost(label, text, is_bracketed) for label in LABELS]
+    for (text, start, _), costs in zip(labels, _costs_of(labels), strict=True):
         steps = sums[:, None] + _STEPS
-        ways.append(steps.argmin(axis=0))
-        costs = steps.min(axis=0)
-    at = int(sums.argmin())
-    order: list[int] = []
-    for k in range(len(labels) - 1, -1, -1):
-        order.insert(0, at)
-        at = int(ways[k - 1][at]) if k else 0
-    cost = float(sums.min())
-    for k, (first, second) in enumerate(pairwise([*order])):
-        is_single = order.count(first) == order.count(second) == 1
-        is_exchanged = first == second + 1 and LABELS[first].row == LABELS[second].row
-        if is_single and is_exchanged:
-            order[k : k + 2] = second, first
-            cost -= WRONG
-    return cost, [Anchor(LABELS[at], *label) for at, label in zip(order, labels, strict=True)]
+        placed = steps.min(axis=0) + costs
+        noted = sums + (limits[start] if text.endswith("=") else np.inf)
+        ways.append(np.where(noted <= placed, -1, steps.argmin(axis=0)).tolist())
+        sums = np.minimum(noted, placed)
+    places = []
+    at = int((sums - SLIGHT * np.arange(len(sums))).argmin())  # passing over those after it
+    for way in reversed(ways):
+        is_placed = way[at] >= 0
+        places.append(at * is_placed)
+        at = way[at] if is_placed else at
+    places.reverse()
+    notes = ["", *("" if at else text for at, (text, *_) in zip(places, labels, strict=True)), ""]
+    return [
+        Anchor(LABELS[at - 1], "" if text in (notes[k], notes[k + 2]) else text, start, stop)
+        for k, (at, (text, start, stop)) in enumerate(zip(places, labels, strict=True))
+        if at
+    ]
+
+
+def _costs_of(labels: Sequence[tuple[str, int, int]]) -> NDArray[np.float64]:
+    """Return the cost of each label that was read in each label's place, after that of none.
+
+    Two of a row that were exchanged cost as much as one.
+    """
+    texts = [text for text, *_ in labels]
+    costs = np.array(
+        [[np.inf, *(_label_cost(label.text, text) for label in LABELS)] for text in texts]
+    )
+    for k, pair in enumerate(pairwise(texts)):
+        for j, (first, second) in enumerate(pairwise(LABELS), 1):
+            if first.row == second.row and (second.text, first.text) == pair:
+                costs[k, j] = costs[k + 1, j + 1] = WRONG / 2
+    return costs
 
 
 @lru_cache(maxsize=10_000)
-def _label_cost(label: Label, read: str, is_bracketed: bool) -> float:
-    """Return the cost that a label was read as another, or with a bracket too many or few."""
-    cost = 0.0
-    if label.name[:1] in ("X", "Y") and is_bracketed != (label.row > ASTERISKS[0]):
-        cost = UNPAIRED / 3
-    if label.text == read:
-        return cost
-    if not (label.text[-1] == read[-1] == "="):
+def _label_cost(label: str, read: str) -> float:
+    """Return the cost that a label was read as another."""
+    if label == read:
+        return 0.0
+    if not (label[-1] == read[-1] == "="):
         return 99.0
-    changes = [(a, b) for a, b in zip(label.text, read, strict=False) if a != b]
-    is_alike = len(label.text) == len(read) and all(b in LOOKALIKES.get(a, "") for a, b in changes)
-    return cost + (ALIKE + UNPAIRED / 3 if is_alike and len(changes) == 1 else WRONG)
+    changes = [(a, b) for a, b in zip(label, read, strict=False) if a != b]
+    is_alike = len(label) == len(read) and all(b in LOOKALIKES.get(a, "") for a, b in changes)
+    return ALIKE if is_alike and len(changes) == 1 else WRONG

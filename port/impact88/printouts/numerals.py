@@ -66,8 +66,6 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
     except ArithmeticError:
         return ()
     digits = len(value.as_tuple().digits)
-    last_place = Decimal(1).scaleb(value.adjusted() - 8)
-    steps = [Decimal(k) for k in (1, 2, 3)] + [Decimal(k) / 10 for k in range(1, 10)]
     shorter = [Decimal(f"{value:.{k}E}") for k in range(digits - 1)]
     texts = [
         f"{number.normalize():f}"
@@ -77,8 +75,6 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
     plain = f"{value:f}"
     texts += [f"{value.normalize():f}"]
     texts += [plain + "." * ("." not in plain) + "0" * k for k in (1, 2, 3)]
-    for step in steps if digits == MAX_DIGITS else ():
-        texts += [f"{(value + sign * step * last_place).normalize():f}" for sign in (1, -1)]
     by_bits: dict[bytes, str] = {}
     for text in [*texts, printed]:
         short = re.sub(r"^(-?)0\.", r"\1.", text)
@@ -120,16 +116,13 @@ def readings(chars: str) -> dict[str, float]:
     ways: list[tuple[str, float]] = [("", 0.0)]
     for char in chars:
         options = [(char, 0.0)] if char in "0123456789.-E" else []
-        if char == "+":
-            options = [("", SLIGHT), ("+", SLIGHT)]
-        elif not options or char == "E":
-            is_mark = not char.isalnum()  # rather a point or sign than a digit or dirt
+        if not options or char == "E":
             for digit in NUMBER_CHARS:
                 if char in LOOKALIKES[digit]:
-                    options.append((digit, ALIKE / 2 if is_mark and digit in ".-" else ALIKE))
+                    options.append((digit, ALIKE))
                 elif char == "?":
                     options.append((digit, ALIKE if digit.isdigit() else 2 * ALIKE))
-            options.append(("", ALIKE if is_mark else 2 * ALIKE))
+            options.append(("", 2 * ALIKE))
         elif char in ".-":
             options.append(("", 3 * ALIKE))
         longer = (

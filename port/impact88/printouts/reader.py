@@ -11,15 +11,16 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from functools import cached_property
 from itertools import groupby, pairwise
 
 import numpy as np
 
 from .align import Aligner
-from .costs import ALIKE, WRONG
+from .costs import ALIKE
 from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of, glyphs_of, split_at_gaps
-from .labels import LABELS, WORDS, Anchor, Label, find_anchors, find_labels, is_note
+from .labels import LABELS, Anchor, Label, find_anchors, find_labels, is_note
 from .numerals import PRINTED, as_printed, readings
 from .page import (
     ANGLES,
@@ -42,6 +43,10 @@ OWNED = re.compile(
 """A number in one piece after a label."""
 CUT = re.compile(r"\.$")
 """The end of a number that nobody prints."""
+CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
+"""The beginning, or the end, of a number that lost digits."""
+LEADING_ZERO = re.compile(r"(?<![0-9.])0(?=\.)")
+"""A zero that people type before a point."""
 NUMERAL = re.compile(r"[-+.,;E~]*[0-9][-+.,;E~0-9]*")
 """A number, perhaps damaged."""
 PROMPT = re.compile("ENTERTHE|VELOCITY|COMPONENT|ALVELOC|VAX,VAY|VBX,VBY")
@@ -53,6 +58,8 @@ MIN_NUMBERS = 3
 """Numbers, after two letters of labels each, that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
+HALF_TURNS = (-360, -180, 180, 360)
+"""Degrees after which the axes of the crush plane are the same, or both turned."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
 
@@ -154,12 +161,7 @@ class Reading:
         if name not in self.slots:
             return {}
         slot = self.slots[name]
-        texts = dict(readings(slot.text))
-        if slot.is_torn:
-            texts = {text: cost + ALIKE for text, cost in texts.items()}
-            for text, cost in readings(chars_of(next(split_at_gaps(slot.glyphs)))).items():
-                texts.setdefault(text, cost + WRONG)
-        return texts
+        return {text: cost + ALIKE * slot.is_torn for text, cost in readings(slot.text).items()}
 
     def places(self) -> dict[int, tuple[int, int]]:
         """Return the place of each cell of which something was read."""
@@ -191,6 +193,19 @@ class Reading:
     def is_apart(self, name: str) -> bool:
         """Return True for a number with more blanks beside it, within its line."""
         return any(0 < extra < math.inf for extra in self.extra_blanks.get(name, ()))
+
+    def is_cut(self, name: str, printed: str) -> bool:
+        """Return True for the beginning or the end of a printed number where the rest of it may
+        have been lost."""
+        read = LEADING_ZERO.sub("", self.slots[name].text)
+        front, end = self.extra_blanks[name]
+        if front > 0 and printed.endswith(read):
+            return True
+        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
+            return True
+        turns = HALF_TURNS if printed and name == "GA" else ()
+        numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
+        return end > 0 and any(number.startswith(read) for number in numbers)
 
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and after the last character of the page's own."""
@@ -275,7 +290,18 @@ class _Reader:
                 reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
             before = anchor
         self._split_replies()
+        self._drop_text_outside()
         return reading
+
+    def _drop_text_outside(self) -> None:
+        """Drop the foreign text above the page's first line and below its last."""
+        reading = self.reading
+        if reading.places():
+            start, stop = reading.span()
+            lines = split_at_gaps(self.glyphs, LINE_GAP)
+            own = [line for line in lines if line[-1].offset >= start and line[0].offset < stop]
+            first, last = own[0][0].offset, own[-1][-1].offset
+            reading.foreign = [run for run in reading.foreign if first <= run[0].offset <= last]
 
     def _read_label(self, anchor: Anchor) -> None:
         """Give the glyphs of an anchor to the cells of its label."""
@@ -316,7 +342,7 @@ class _Reader:
             if owner:
                 cells = [SLOT_CELLS[owner], *cells]
         if tail:
-            slots = self._align(tail, cells, before.label, after, is_exact and not count) | slots
+            slots = self._align(tail, cells, before.label, is_exact and not count) | slots
         for name, slot in slots.items():
             if name == "ANGLES":
                 self._add_angles(slot)
@@ -346,8 +372,6 @@ class _Reader:
     def _add_slot(self, name: str, slot: Slot) -> None:
         """Add the text in the place of a number, or a second one."""
         slots = self.reading.slots
-        if name in slots and slot.is_clean and not slots[name].is_clean:
-            slots[name], slot = slot, slots[name]
         if name in slots:
             self.reading.repeated.append((name, slot))
         else:
@@ -358,7 +382,6 @@ class _Reader:
         glyphs: Sequence[Glyph],
         cells: Sequence[int],
         before: Label,
-        after: Label,
         is_owned: bool,
     ) -> dict[str, Slot]:
         """Align glyphs with cells; return the slots, and list what belongs to none.
@@ -397,17 +420,11 @@ class _Reader:
             if not label and not is_single:
                 foreign.update(members)
                 continue
-            text = chars_of([glyphs[i] for i in members])
-            if (note := WORDS.search(text)) and name not in MANY:
-                foreign.update(members[note.start() :])
-                members = members[: note.start()]
-            if members:
-                slot = Slot([glyphs[i] for i in members], label, not is_whole)
-                slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
-                slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
-                slots[name] = slot
-        indices = _within_page(glyphs, foreign, before is FIRST, after is LAST)
-        for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):
+            slot = Slot([glyphs[i] for i in members], label, not is_whole)
+            slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
+            slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
+            slots[name] = slot
+        for _, run in groupby(enumerate(sorted(foreign)), lambda pair: pair[1] - pair[0]):
             self.reading.foreign.append([glyphs[i] for _, i in run])
         return slots
 
@@ -489,17 +506,6 @@ def _count_torn(rest: Sequence[Glyph]) -> int:
         if digits < len(word):
             break
     return count
-
-
-def _within_page(
-    glyphs: Sequence[Glyph], foreign: set[int], is_first: bool, is_last: bool
-) -> list[int]:
-    """Return the foreign glyphs without the lines above and below the page."""
-    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs])
-    own = [int(lines[i]) for i in range(len(glyphs)) if i not in foreign]
-    first = min([*own, int(lines[-1])]) if is_first else 0
-    last = max([*own, 0]) if is_last and not is_first else int(lines[-1])
-    return [i for i in sorted(foreign) if first <= lines[i] <= last]
 
 
 def _count_numbers(glyphs: Sequence[Glyph], members: list[int], own: dict[str, list[int]]) -> int:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from decimal import Decimal
 from difflib import SequenceMatcher
 from types import MappingProxyType
 
@@ -32,23 +31,15 @@ from .page import (
     printed_rows,
 )
 from .programs import Listing
-from .reader import Reading, read_printouts
+from .reader import CUT_NUMBER, Reading, read_printouts
 from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
 
-CUT_NUMBER = re.compile(r"-?0[0-9]|.*\.$")
-"""The beginning, or the end, of a number that lost digits."""
-LEADING_ZERO = re.compile(r"(?<![0-9.])0(?=\.)")
-"""A zero that people type before a point."""
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
-MAX_FOREIGN_DIGITS = 6
-"""Digits that belong to nothing, from which it is open whether the numbers were read rightly."""
 MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
 WORDS = {*re.findall("[A-Z]+", re.sub("{.*?}", "", " ".join(ROWS)))}
 """The words of the page's labels."""
-HALF_TURNS = (-360, -180, 180, 360)
-"""Degrees after which the axes of the crush plane are the same, or both turned."""
 
 
 def judge(
@@ -115,7 +106,7 @@ def _either(
     others = [finding for finding in findings if finding.name not in printed]
     is_sure = any(f.kind is Kind.NUMBER for f in findings if f not in others)
     is_sure &= not any(
-        comparison.is_cut(name, text) or comparison.reading.is_apart(name)
+        comparison.reading.is_cut(name, text) or comparison.reading.is_apart(name)
         for name, text in printed.items()
     )
     kind = Kind.EITHER if is_sure else Kind.OPEN
@@ -289,22 +280,9 @@ class Comparison:
         if text == read or text in readings(read):
             return Kind.DOUBT
         if slot.is_clean:
-            is_end = slot.is_bounded and not self.is_cut(name, text)
+            is_end = slot.is_bounded and not self.reading.is_cut(name, text)
             return Kind.NUMBER if is_end else Kind.UNREAD
         return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
-
-    def is_cut(self, name: str, printed: str) -> bool:
-        """Return True for the beginning or the end of a printed number where the rest of it may
-        have been lost."""
-        read = LEADING_ZERO.sub("", self.reading.slots[name].text)
-        front, end = self.reading.extra_blanks[name]
-        if front > 0 and printed.endswith(read):
-            return True
-        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
-            return True
-        turns = HALF_TURNS if printed and name == "GA" else ()
-        numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
-        return end > 0 and any(number.startswith(read) for number in numbers)
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
@@ -325,7 +303,7 @@ class Comparison:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
                 kind = Kind.DOUBT
                 if is_clean and not is_same and not self.reading.is_machine_read:
-                    kind = Kind.UNREAD if self.is_cut(reply, reply_text) else Kind.NUMBER
+                    kind = Kind.UNREAD if self.reading.is_cut(reply, reply_text) else Kind.NUMBER
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _words(self) -> tuple[list[Word], list[int]]:
@@ -392,13 +370,10 @@ class Comparison:
             findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
-        foreign = "".join(finding.read for finding in findings if finding.kind is Kind.FOREIGN)
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
-        is_unsure = is_machine_read or bool(unsure)
-        is_unsure |= any(map(self.reading.is_apart, INPUTS))
-        is_unsure |= sum(map(str.isdigit, foreign)) >= MAX_FOREIGN_DIGITS
-        is_open = is_unsure and len(numbers) + len(unread) > MAX_ALTERED
+        is_open = (is_machine_read or bool(unsure)) and len(numbers) + len(unread) > MAX_ALTERED
         is_open |= any(finding.name in INPUTS for finding in unread)
+        is_open |= any(map(self.reading.is_apart, INPUTS))
         swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
         is_open |= is_machine_read and ("" in swaps or len({*swaps}) < len(swaps))
         open_numbers = [f for f in numbers if is_open or PARTNERS.get(f.name) in unsure]
