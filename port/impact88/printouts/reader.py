@@ -11,7 +11,6 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal
 from functools import cached_property
 from itertools import groupby, pairwise
 
@@ -58,8 +57,6 @@ MIN_NUMBERS = 3
 """Numbers, after two letters of labels each, that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
-HALF_TURNS = (-360, -180, 180, 360)
-"""Degrees after which the axes of the crush plane are the same, or both turned."""
 FIRST = Label("", "", -1, -1, 0)
 LAST = Label("", "", len(ROWS), len(CELLS), len(CELLS))
 
@@ -203,9 +200,7 @@ class Reading:
             return True
         if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
             return True
-        turns = HALF_TURNS if printed and name == "GA" else ()
-        numbers = [printed, *(f"{Decimal(printed) + turn:f}" for turn in turns)]
-        return end > 0 and any(number.startswith(read) for number in numbers)
+        return end > 0 and printed.startswith(read)
 
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and after the last character of the page's own."""
@@ -438,18 +433,13 @@ class _Reader:
 
 
 def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
-    """Yield the words of the row of angles: a sign before a blank is the next word's, and one
-    after a digit begins a word."""
+    """Yield the words of the row of angles: a sign before a blank is the next word's."""
     sign: list[Glyph] = []
     for word in split_at_gaps(row):
-        text = chars_of(word)
-        if text in "-~":
-            sign = [*sign, *word]
-            continue
-        cuts = [0, *(match.end() for match in re.finditer("[0-9](?=-)", text)), len(word)]
-        yield [*sign, *word[: cuts[1]]]
-        yield from ([*word[a:b]] for a, b in pairwise(cuts[1:]))
-        sign = []
+        sign += word
+        if chars_of(word) not in "-~":
+            yield sign
+            sign = []
     if sign:
         yield sign
 

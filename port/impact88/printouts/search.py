@@ -135,9 +135,8 @@ def _options(
     texts = dict(reading.readings(name))
     reply = reading.replies.get(name, "") or ("" if texts else given.get(scene_name(name), ""))
     entry = stored_and_printed(reply, name in ANGLES) if TYPED.fullmatch(reply) else None
-    doubt = ALIKE + UNPAIRED * (name in reading.slots)
     for text in [entry[1]] if entry else readings(reply):
-        texts[text] = min(texts.get(text, doubt), doubt)
+        texts[text] = min(texts.get(text, ALIKE), ALIKE)
     options: list[Option] = []
     for text, cost in sorted(texts.items(), key=lambda item: item[1]):
         entries = [reply] if entry and entry[1] == text else program.spellings(name, text)

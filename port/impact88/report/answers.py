@@ -173,7 +173,7 @@ def ask(case: Case, wanted: Sequence[str] = ()) -> Answer:
     if case.correlations and not (is_forward and case.ranges):
         raise UserError(
             "correlations are those of a complete scene; expected two values within limits",
-            case.place("correlations"),
+            case.places.get("correlations", case.source),
         )
     return (_forward if is_forward else _reconstruct)(case, wanted)
 
