@@ -37,7 +37,7 @@ class Completed(NamedTuple):
     ----------
     values : dict of str to ndarray
         What was given, and all of UX UY WA VX VY WB, VAX VAY WAF VBX VBY WBF, PN PT PM, E MUP EM,
-        MU (as typed: line 400 makes MUP of it) and mu, which is MUP. `evaluate` gives all else.
+        MU (as typed: line 400 makes MUP of it). `evaluate` gives all else.
     log_volume : ndarray
         Logarithm of the volume of velocities before and coefficients per unit of the velocities and
         of the laws' values that were given.
@@ -119,7 +119,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
         if name not in known:
             values[name] = dividend / divisor
             volume = volume - np.log(np.abs(divisor))
-    values["mu"] = mu = values["MUP"]
+    mu = values["MUP"]
     values["MU"] = np.where((g[1] > 0.0) & (mu != PIVOT), -mu, mu)
     (a, b, c), _ = _laws(values, g, full, np.zeros((3, 1)))
     return Completed(values, volume + np.log(np.abs(_dot(a, _cross(b, c)))))

@@ -201,7 +201,8 @@ def run_formulas(steps: Sequence[tuple[str, int]], values: dict[str, Any]) -> No
         if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
             quantities = [np.float64(1.0)] * len(formula.gives)  # not used
         else:
-            function = getattr(formulas if name in COMPILED else consequences, name)
+            module = formulas if name in COMPILED else consequences
+            function = getattr(module, formula.tree.name)
             quantities = function(*[values[operand] for operand in formula.takes])
         for quantity, array in zip(formula.gives, quantities, strict=True):
             values.setdefault(quantity, array)

@@ -5,6 +5,7 @@ imports numpy: the build step that prints the formulas as C reads them through t
 """
 
 import ast
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,33 +15,48 @@ from ..names import SCENE
 COLUMNS = tuple(SCENE)
 """Names of a scene's columns, in the order of the compiled library."""
 
-HELPERS = ("sine_and_cosine",)
+HELPERS = ("sine_and_cosine", "dot", "cross")
 """Functions of `formulas` that formulas call, and that are no formulas."""
+
+BODIES = (
+    "MA IA DA PA TA UX UY WA VAX VAY WAF angle_a da an at D3 D4 CAX CAY ma ia part_a own_a given_a "
+    "wa fa ja free_a ax ay wa_s wa_p XA YA XAF YAF DVA EESA SA SAF HA HAF front_a DVAF DVAR PDOFA",
+    "MB IB DB PB TB VX VY WB VBX VBY WBF angle_b db bn bt D1 D2 CBX CBY mb ib part_b own_b given_b "
+    "wb fb jb free_b bx by wb_s wb_p XB YB XBF YBF DVB EESB SB SBF HB HBF front_b DVBF DVBR PDOFB",
+)
+"""Quantities of A, and the same ones of B."""
+TIMES = (
+    "UX UY WA VX VY WB wa wb SA SB XA YA XB YB KI cn ct gn gt",
+    "VAX VAY WAF VBX VBY WBF waf wbf SAF SBF XAF YAF XBF YBF KF cn_after ct_after gn_after "
+    "gt_after",
+)
+"""Quantities before the impact, and the same ones after it."""
 
 PIVOTS = 1  # guard of a formula that only pivots need
 OTHERS = 2  # of one that only the other scenes need
 GUARDS = {
     "pivot_impulse": PIVOTS,
     "pivot_spins": PIVOTS,
+    "friction_arms": OTHERS,
     "sliding_impulse": OTHERS,
     "sliding_spins": OTHERS,
 }
 """Formulas that only pivots need, or only the other scenes."""
-SELECTING = ("impulse", "final_spins")
+SELECTING = ("impulse", "final_spin", "final_spin_b")
 """Formulas that look at the guarded ones' results only where these apply."""
 
 
 class Formula(NamedTuple):
-    """A function of `formulas` or `consequences`.
+    """A function of `formulas` or `consequences`, for some quantities.
 
     Parameters
     ----------
     name : str
-        The function's name.
+        The function's name, with a suffix where it is repeated for other quantities.
     takes, gives : tuple of str
         Names of the quantities that it takes and returns.
     tree : ast.FunctionDef
-        Its text.
+        The function's text.
     """
 
     name: str
@@ -78,18 +94,42 @@ def _read_formulas(module: ast.Module) -> dict[str, Formula]:
     for tree in module.body:
         if isinstance(tree, ast.FunctionDef) and not tree.name.startswith("_"):
             takes = tuple(argument.arg for argument in tree.args.args)
-            last: Any = tree.body[-1]  # a return of a tuple of names
-            gives = tuple(name.id for name in last.value.elts)
+            last: Any = tree.body[-1]  # a return of a tuple of names; of an expression by helpers
+            gives = tuple(name.id for name in getattr(last.value, "elts", ()))
             formulas[tree.name] = Formula(tree.name, takes, gives, tree)
     return formulas
+
+
+def _repeat(
+    formulas: Mapping[str, Formula], suffix: str, names: str, others: str
+) -> dict[str, Formula]:
+    """Return formulas by name, each that gives some of ``names`` alone followed by the same for the
+    ``others``, unless these have a formula of their own."""
+    first, second = names.split(), others.split()
+    exchange = dict(zip(first + second, second + first, strict=True))
+    own = {formula.gives for formula in formulas.values()}
+    repeated = {}
+    for name, formula in formulas.items():
+        repeated[name] = formula
+        takes, gives = (
+            tuple(exchange.get(x, x) for x in side) for side in (formula.takes, formula.gives)
+        )
+        if {*first}.issuperset(formula.gives) and gives not in own:
+            repeated[name + suffix] = Formula(name + suffix, takes, gives, formula.tree)
+    return repeated
+
+
+def _for_all(formulas: Mapping[str, Formula]) -> dict[str, Formula]:
+    """Return formulas by name, those of both bodies and both times repeated."""
+    return _repeat(_repeat(formulas, "_b", *BODIES), "_after", *TIMES)
 
 
 SOURCE = _parse("formulas.py")
 """The text of `formulas`."""
 FUNCTIONS = _read_formulas(SOURCE)
-COMPILED = {name: formula for name, formula in FUNCTIONS.items() if name not in HELPERS}
+COMPILED = _for_all({name: f for name, f in FUNCTIONS.items() if name not in HELPERS})
 """Formulas that the compiled library has, too."""
-FORMULAS = COMPILED | _read_formulas(_parse("consequences.py"))
+FORMULAS = COMPILED | _for_all(_read_formulas(_parse("consequences.py")))
 ROWS = {
     name: row
     for row, name in enumerate((*COLUMNS, *(x for f in COMPILED.values() for x in f.gives)))

@@ -15,7 +15,7 @@ from .plan import COLUMNS, COMPILED, FUNCTIONS, ROWS, SOURCE, Formula
 
 
 def statements(formula: Formula) -> list[str]:
-    """Return a function's assignments in C; a name that is assigned again keeps its variable."""
+    """Return a function's statements in C; a name that is assigned again keeps its variable."""
     lines: list[str] = []
     variables = set(formula.takes)
     for line in formula.tree.body:
@@ -30,16 +30,21 @@ def statements(formula: Formula) -> list[str]:
                 places = [f"&{ast.unparse(name)}" for name in names]
                 lines.append(f"double {', '.join(map(ast.unparse, names))};")
                 lines.append(f"{ast.unparse(call).removesuffix(')')}, {', '.join(places)});")
+            case ast.Return(value=ast.Tuple(elts=names)):
+                lines += [f"*to_{name} = {name};" for name in map(ast.unparse, names)]
+            case ast.Return():
+                lines.append(f"{ast.unparse(line)};")
     return lines
 
 
 def function_text(formula: Formula) -> str:
-    """Return a function in C, of numbers and of the places of its results."""
+    """Return a function in C, of numbers and of the places of its results, if it has names for
+    them."""
     parameters = [f"double {name}" for name in formula.takes]
     parameters += [f"double *to_{name}" for name in formula.gives]
-    body = [*statements(formula), *(f"*to_{name} = {name};" for name in formula.gives)]
-    head = f"INLINE void {formula.name}({', '.join(parameters)})\n{{"
-    return "\n    ".join([head, *body]) + "\n}"
+    kind = "void" if formula.gives else "double"
+    head = f"INLINE {kind} {formula.name}({', '.join(parameters)})\n{{"
+    return "\n    ".join([head, *statements(formula)]) + "\n}"
 
 
 def loop_text(formula: Formula) -> str:
@@ -47,7 +52,7 @@ def loop_text(formula: Formula) -> str:
     places = {n: f"in[{k}][i]" if n in COLUMNS else f"row[{k}][i]" for n, k in ROWS.items()}
     operands = [places[name] for name in formula.takes]
     operands += [f"&{places[name]}" for name in formula.gives]
-    call = f"EACH {formula.name}({', '.join(operands)});"
+    call = f"EACH {formula.tree.name}({', '.join(operands)});"
     return f"CLONES void each_{formula.name}(const double *const *in, ROW *row)\n{{\n    {call}\n}}"
 
 
