@@ -70,21 +70,21 @@ def sine_and_cosine(degrees):
     k = quarters - 4.0 * (0.25 * quarters + ROUND - ROUND)  # -2 ... 2
     r = (degrees - 90.0 * quarters) * RADIAN
     q = r * r
-    sin_r = r + r * q * (
-        -1.66666666666666324348e-01
-        + q * (8.33333333332248946124e-03
-        + q * (-1.98412698298579493134e-04
-        + q * (2.75573137070700676789e-06
-        + q * (-2.50507602534068634195e-08
-        + q * 1.58969099521155010221e-10))))
+    sin_r = r - r * q * (
+        1.66666666666666324348e-01
+        - q * (8.33333333332248946124e-03
+        - q * (1.98412698298579493134e-04
+        - q * (2.75573137070700676789e-06
+        - q * (2.50507602534068634195e-08
+        - q * 1.58969099521155010221e-10))))
     )  # fmt: skip
     cos_r = 1.0 - (0.5 * q - q * q * (
         4.16666666666666019037e-02
-        + q * (-1.38888888888741095749e-03
-        + q * (2.48015872894767294178e-05
-        + q * (-2.75573143513906633035e-07
-        + q * (2.08757232129817482790e-09
-        + q * -1.13596475577881948265e-11))))
+        - q * (1.38888888888741095749e-03
+        - q * (2.48015872894767294178e-05
+        - q * (2.75573143513906633035e-07
+        - q * (2.08757232129817482790e-09
+        - q * 1.13596475577881948265e-11))))
     ))  # fmt: skip
     sin_k = k * (2.0 - fabs(k))
     cos_k = 1.0 - fabs(k)
@@ -335,21 +335,21 @@ def sliding_spins(
     return wa_s, wb_s
 
 
-def pivot_spins(
-    em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b, given_a, given_b, ct, w, D_p
-):
-    """Return the final spins of bodies without slip at separation."""
-    ab = dot(an, at, bn, bt)
+def pivot_state(R, ia, wa, an, at, ct, w):
+    """Return R times the spin that the impulse between point masses would leave."""
     state_a = R * wa - ia * dot(an, at, w, ct)
-    state_b = R * wb - ib * dot(bn, bt, w, ct)
-    turn_a = em * (ab * ia * wb - dot(bn, bt, bn, bt) * ib * wa)
-    turn_b = em * (ab * ib * wa - dot(an, at, an, at) * ia * wb)
+    return (state_a,)
+
+
+def pivot_spin(
+    em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, given_b, state_a, state_b, ct, w, D_p
+):
+    """Return the final spin of a body without slip at separation."""
+    turn = em * (dot(an, at, bn, bt) * ia * wb - dot(bn, bt, bn, bt) * ib * wa)
     lever = em * J * (ia + ib) * cross(an, at, bn, bt)
-    wa_p = R * (dot(own_a, given_b, state_a, state_b) + turn_a) - lever * cross(bn, bt, w, ct)
-    wb_p = R * (dot(own_b, given_a, state_b, state_a) + turn_b) + lever * cross(an, at, w, ct)
+    wa_p = R * (dot(own_a, given_b, state_a, state_b) + turn) - lever * cross(bn, bt, w, ct)
     wa_p = wa_p / D_p
-    wb_p = wb_p / D_p
-    return wa_p, wb_p
+    return (wa_p,)
 
 
 def final_spin(M, MU, WA, wa_s, wa_p):
@@ -542,35 +542,33 @@ def friction_bits(MU, MUP, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, N
     return (of_friction,)
 
 
-def coefficient_bits(E, MU, MUP, em):
-    """Return the bits of coefficients out of range."""
+def range_bits(E, MU, MUP, em, da, at, db, bt):
+    """Return the bits of coefficients out of range, and of centers on the wrong side of the contact
+    plane."""
     moment = (em < EM_MIN) | (em > EM_MAX) & (em != NO_MOMENT)
     of_range = where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)
     of_range = of_range + where(moment, Status.EM_OUT_OF_RANGE, 0.0)
     of_range = of_range + where((MU != PIVOT) & (MUP <= PIVOT), Status.MU_OUT_OF_RANGE, 0.0)
+    of_range = of_range + where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
+    of_range = of_range + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
     return (of_range,)
 
 
-def side_bits(da, at, db, bt):
-    """Return the bits of centers on the wrong side of the contact plane."""
-    of_sides = where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
-    of_sides = of_sides + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
-    return (of_sides,)
-
-
-def solution_bits(KI, EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):
-    """Return the bits of scenes without a solution, or nearly so."""
+def solution_bits(gn, PN, KI, EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):
+    """Return the bits of scenes that break a law, or have no solution, or nearly so; a comparison
+    with NaN is false."""
     finite = fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF
     finite = finite & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
     of_solution = where(finite, 0.0, Status.NOT_FINITE)
     of_solution = of_solution + where(COND < SINGULAR_FROM, 0.0, Status.SINGULAR)
+    of_solution = of_solution + where(gn >= 0.0, Status.SEPARATING, 0.0)
+    of_solution = of_solution + where(PN < 0.0, Status.PULLING, 0.0)
+    gained = -(EL + EL) > ENERGY_TOLERANCE * KI
+    of_solution = of_solution + where(gained, Status.ENERGY_GAINED, 0.0)
     return (of_solution,)
 
 
-def status(gn, PN, KI, EL, of_range, of_friction, of_sides, of_solution):
-    """Return the bits of `impact88.status.Status`; a comparison with NaN is false."""
-    STATUS = of_range + of_friction + of_sides + of_solution
-    STATUS = STATUS + where(gn >= 0.0, Status.SEPARATING, 0.0)
-    STATUS = STATUS + where(PN < 0.0, Status.PULLING, 0.0)
-    STATUS = STATUS + where(-(EL + EL) > ENERGY_TOLERANCE * KI, Status.ENERGY_GAINED, 0.0)
+def status(of_range, of_friction, of_solution):
+    """Return the bits of `impact88.status.Status`."""
+    STATUS = of_range + of_friction + of_solution
     return (STATUS,)

@@ -19,10 +19,12 @@ HELPERS = ("sine_and_cosine", "dot", "cross")
 """Functions of `formulas` that formulas call, and that are no formulas."""
 
 BODIES = (
-    "MA IA DA PA TA UX UY WA VAX VAY WAF angle_a da an at D3 D4 CAX CAY ma ia part_a own_a given_a "
-    "wa fa ja free_a ax ay wa_s wa_p XA YA XAF YAF DVA EESA SA SAF HA HAF front_a DVAF DVAR PDOFA",
-    "MB IB DB PB TB VX VY WB VBX VBY WBF angle_b db bn bt D1 D2 CBX CBY mb ib part_b own_b given_b "
-    "wb fb jb free_b bx by wb_s wb_p XB YB XBF YBF DVB EESB SB SBF HB HBF front_b DVBF DVBR PDOFB",
+    "MA IA DA PA TA UX UY WA VAX VAY WAF XA YA XAF YAF DVA EESA CAX CAY D3 D4 SA SAF HA HAF DVAF "
+    "DVAR PDOFA ma ia fa ja wa an at ax ay da angle_a part_a own_a given_a wa_s wa_p state_a "
+    "free_a front_a",
+    "MB IB DB PB TB VX VY WB VBX VBY WBF XB YB XBF YBF DVB EESB CBX CBY D1 D2 SB SBF HB HBF DVBF "
+    "DVBR PDOFB mb ib fb jb wb bn bt bx by db angle_b part_b own_b given_b wb_s wb_p state_b "
+    "free_b front_b",
 )
 """Quantities of A, and the same ones of B."""
 TIMES = (
@@ -36,13 +38,14 @@ PIVOTS = 1  # guard of a formula that only pivots need
 OTHERS = 2  # of one that only the other scenes need
 GUARDS = {
     "pivot_impulse": PIVOTS,
-    "pivot_spins": PIVOTS,
+    "pivot_state": PIVOTS,
+    "pivot_spin": PIVOTS,
     "friction_arms": OTHERS,
     "sliding_impulse": OTHERS,
     "sliding_spins": OTHERS,
 }
 """Formulas that only pivots need, or only the other scenes."""
-SELECTING = ("impulse", "final_spin", "final_spin_b")
+SELECTING = ("impulse", "final_spin")
 """Formulas that look at the guarded ones' results only where these apply."""
 
 
@@ -65,20 +68,24 @@ class Formula(NamedTuple):
     tree: ast.FunctionDef
 
 
+Step = tuple[str, int]
+"""A formula's name, and its guard: 0 for none."""
+
+
 class Plan(NamedTuple):
     """The computation of some quantities.
 
     Parameters
     ----------
     steps : tuple of (str, int)
-        Formulas in an order in which each finds what it takes, with their guards (0: none).
+        Formulas in an order in which each finds what it takes, with their guards.
     inputs : tuple of str
         Columns and known quantities that the steps take.
     missing : dict of str to tuple of str
         Wanted quantities that do not follow from what is known -> the columns that they lack.
     """
 
-    steps: tuple[tuple[str, int], ...]
+    steps: tuple[Step, ...]
     inputs: tuple[str, ...]
     missing: dict[str, tuple[str, ...]]
 
@@ -172,14 +179,14 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     quantities = {x for x in wanted if x in sources}
     everywhere = set(wanted)  # quantities that all scenes need
     inputs: set[str] = set()
-    steps: list[tuple[str, int]] = []
+    steps: list[Step] = []
     for name in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
-        _, takes, gives, _ = FORMULAS[name]
+        _, takes, gives, tree = FORMULAS[name]
         used = {x for x in quantities.intersection(gives) if sources.get(x) == name}
         if used:
             is_guarded = everywhere.isdisjoint(used) and "MU" in known
-            guard = GUARDS.get(name, 0) if is_guarded else 0
-            if not guard and name not in SELECTING:
+            guard = GUARDS.get(tree.name, 0) if is_guarded else 0
+            if not guard and tree.name not in SELECTING:
                 everywhere.update(takes)
             steps.append((name, guard))
             inputs |= known.intersection(takes)
