@@ -221,17 +221,17 @@ def friction_arms(MUP, an, at, bn, bt, sn, st, kn, kt):
 
 
 def sliding_impulse(em, z, R, J, Ired, sn, kn, af, bf, sf, kf, from_a, from_b, mean, turn, w):
-    """Return the determinant, Pn and h for Pt = MUP Pn."""
+    """Return the determinant, and Pn and h times the determinant, for Pt = MUP Pn."""
     D_s = z * (R + J * sn * sf) - em * (Ired * kn * kf)
-    Pn_s = (em * kn * turn - z * (w + sn * mean)) / D_s
-    h_s = (Ired * kf * w - R * turn - sn * cross(bf, af, from_b, from_a)) / D_s
+    Pn_s = em * kn * turn - z * (w + sn * mean)
+    h_s = Ired * kf * w - R * turn - sn * cross(bf, af, from_b, from_a)
     return D_s, Pn_s, h_s
 
 
 def pivot_impulse(
     em, z, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, ia, ib, from_a, from_b, mean, turn, ct, w
 ):
-    """Return the determinant, Pn and Pt times the determinant, and h for no slip at separation.
+    """Return the determinant, and Pn, Pt and h times it, for no slip at separation.
 
     The determinant is R times a sum of squares; ``lever`` is the cross product of k and s without
     the difference of its products.
@@ -251,17 +251,17 @@ def pivot_impulse(
     Xn = cross(bn, an, from_b, from_a)
     Xt = cross(bt, at, from_b, from_a)
     twist = Ired * dot(kn, kt, w, ct) - R * turn - dot(sn, st, Xn, Xt)
-    h_p = (R * twist - J * axb * sxw) / D_p
+    h_p = R * twist - J * axb * sxw
     return D_p, Nn, Nt, h_p
 
 
 def impulse(MU, MUP, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
     """Return the impulse, h and the determinant."""
     pivot = MU == PIVOT
-    PN = where(pivot, Nn / D_p, Pn_s)
-    PT = where(pivot, Nt / D_p, MUP * Pn_s)
-    h = where(pivot, h_p, h_s)
     D = where(pivot, D_p, D_s)
+    PN = where(pivot, Nn, Pn_s) / D
+    PT = where(pivot, Nt / D, MUP * PN)
+    h = where(pivot, h_p, h_s) / D
     return PN, PT, h, D
 
 
@@ -320,9 +320,8 @@ def sliding_spins(
     given_a,
     given_b,
     w,
-    D_s,
 ):
-    """Return the final spins of sliding bodies (Equation 17).
+    """Return the final spins of sliding bodies (Equation 17), times the determinant.
 
     They are not computed from the impulse, whose parts cancel where arms are far longer than radii
     of gyration.
@@ -330,8 +329,8 @@ def sliding_spins(
     push = z * J * sf
     twist = em * Ired * kf
     change = em * (af * ia * wb - bf * ib * wa)
-    wa_s = (R * dot(own_a, given_b, wa, wb) - w * (push - ia * twist) + bn * change) / D_s
-    wb_s = (R * dot(own_b, given_a, wb, wa) - w * (push + ib * twist) - an * change) / D_s
+    wa_s = R * dot(own_a, given_b, wa, wb) - w * (push - ia * twist) + bn * change
+    wb_s = R * dot(own_b, given_a, wb, wa) - w * (push + ib * twist) - an * change
     return wa_s, wb_s
 
 
@@ -341,20 +340,17 @@ def pivot_state(R, ia, wa, an, at, ct, w):
     return (state_a,)
 
 
-def pivot_spin(
-    em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, given_b, state_a, state_b, ct, w, D_p
-):
-    """Return the final spin of a body without slip at separation."""
+def pivot_spin(em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, given_b, state_a, state_b, ct, w):
+    """Return the final spin without slip at separation, times the determinant."""
     turn = em * (dot(an, at, bn, bt) * ia * wb - dot(bn, bt, bn, bt) * ib * wa)
     lever = em * J * (ia + ib) * cross(an, at, bn, bt)
     wa_p = R * (dot(own_a, given_b, state_a, state_b) + turn) - lever * cross(bn, bt, w, ct)
-    wa_p = wa_p / D_p
     return (wa_p,)
 
 
-def final_spin(M, MU, WA, wa_s, wa_p):
+def final_spin(M, MU, WA, wa_s, wa_p, D):
     """Return the final spin; that of a point mass passes through."""
-    WAF = where(M == 4.0, WA, where(MU == PIVOT, wa_p, wa_s))
+    WAF = where(M == 4.0, WA, where(MU == PIVOT, wa_p, wa_s) / D)
     return (WAF,)
 
 

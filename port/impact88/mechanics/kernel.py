@@ -131,7 +131,7 @@ class Kernel:
         numbers: Array,
         columns: Sequence[Array],
         shape: tuple[int, ...],
-        out: Sequence[Array] | None = None,
+        out: Mapping[str, Any] | None = None,
         threads: int | None = 1,
     ) -> dict[str, Any]:
         """Return results of inputs.
@@ -144,31 +144,37 @@ class Kernel:
             A contiguous float64 array of one length for each name in ``changing``.
         shape : tuple of int
             The shape of the results, of that size: numbers for ().
-        out : sequence of ndarray, optional
+        out : mapping of str to ndarray, optional
             Contiguous arrays to write the results into, instead of new ones.
         threads : int or None, default 1
             The number of threads, None for as many as there are processors and work.
+
+        Raises
+        ------
+        UserError
+            For arrays in ``out`` that cannot take the results.
         """
         count = math.prod(shape)
         places = addresses(columns)
         if out is None:
             block = np.empty((len(self.results), count))
-            rows = [*block]
+            arrays = [*block]
             starts = _row_addresses(block)
             for row in self._bits:
-                rows[row] = rows[row].view(np.uint16)[:count]
+                arrays[row] = arrays[row].view(np.uint16)[:count]
         else:
-            rows, starts = [array.reshape(-1) for array in out], addresses(out)
-            _check_overlap((places, columns), (starts, rows))
+            arrays = [_output_array(out, name, shape) for name in self.results]
+            starts = addresses(arrays)
+            _check_overlap((places, columns), (starts, arrays))
         if _compiled is None or library.is_switched_off():
-            self._run_by_numpy(numbers, columns, rows)
+            self._run_by_numpy(numbers, columns, [array.reshape(-1) for array in arrays])
         else:
             table = np.array([*_row_addresses(numbers), *places, *starts], np.int64)
             work = partial(_compiled.solve, self._plan_address, *addresses([table]))
             run_in_threads(work, count, threads)
-        if len(shape) != 1:
-            rows = [row.reshape(shape) if shape else row[0] for row in rows]
-        return dict(zip(self.results, rows, strict=True))
+        if out is None and len(shape) != 1:
+            arrays = [array.reshape(shape) if shape else array[0] for array in arrays]
+        return dict(zip(self.results, arrays, strict=True))
 
     def _run_by_numpy(
         self, numbers: Array, columns: Sequence[Array], rows: Sequence[Array]
@@ -193,14 +199,15 @@ def _gives(steps: Sequence[Step]) -> set[str]:
     return {x for name, _ in steps for x in FORMULAS[name].gives}
 
 
-def check_output(arrays: Mapping[str, Any], shape: tuple[int, ...]) -> None:
-    """Raise UserError for arrays, by name, that cannot take results of a shape."""
-    for name, array in arrays.items():
-        dtype: type = np.uint16 if name == "STATUS" else np.float64
-        is_array = isinstance(array, np.ndarray) and array.flags.carray
-        if not is_array or array.shape != shape or array.dtype != dtype:
-            form = f"a contiguous array of {dtype.__name__} of shape {shape}"
-            raise UserError(f"out, {name}: expected {form}")
+def _output_array(out: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Any:
+    """Return the array for a result. Raises UserError where it cannot take results of a shape."""
+    array: Any = out.get(name)
+    dtype: type = np.uint16 if name == "STATUS" else np.float64
+    is_array = isinstance(array, np.ndarray) and array.flags.carray
+    if not is_array or array.shape != shape or array.dtype != dtype:
+        form = f"a contiguous array of {dtype.__name__} of shape {shape}"
+        raise UserError(f"out, {name}: expected {form}")
+    return array
 
 
 def _check_overlap(*groups: tuple[Sequence[int], Sequence[Array]]) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
-from .kernel import Kernel, check_output, run_formulas
+from .kernel import Kernel, run_formulas
 from .plan import QUANTITIES, plan
 
 Array = NDArray[Any]
@@ -97,13 +97,7 @@ def solve(
     wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
     shape, inputs, varying = _flatten(_read_columns(columns, needed))
     kernel = _kernel(wanted, _COLUMNS, varying, True)
-    numbers, varied = _select(inputs, kernel)
-    if out is None:
-        return kernel.compute(numbers, varied, shape, None, threads)
-    arrays: dict[str, Any] = {name: out.get(name) for name in wanted}
-    check_output(arrays, shape)
-    kernel.compute(numbers, varied, shape, [*arrays.values()], threads)
-    return arrays
+    return kernel.compute(*_select(inputs, kernel), shape, out, threads)
 
 
 def evaluate(
