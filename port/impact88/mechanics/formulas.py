@@ -454,8 +454,8 @@ def percent_lost(EL, KI):
 
 def equivalent_speed(EL, MB, ma):
     """Return the speed of half the loss in a body, of all before a rigid barrier."""
-    twice = where(EL < 0.0, 0.0, EL + EL)
-    EESA = sqrt(where(MB == INF, twice, 0.5 * twice)) * sqrt(ma)
+    lost = where(EL < 0.0, 0.0, EL)
+    EESA = sqrt(where(MB == INF, lost + lost, lost)) * sqrt(ma)
     return (EESA,)
 
 
