@@ -74,7 +74,7 @@ class Kernel:
         Quantities that `compute` returns: those wanted, and those that ``following`` takes.
     fixed, changing : list of str
         The inputs that `compute` takes, numbers and columns.
-    following : list of (str, int)
+    following : list of (Formula, int)
         Formulas that numpy runs afterwards (`run_formulas`): those of `consequences`, those that
         give what is known, and what they lead to.
     missing : dict of str to tuple of str
@@ -91,13 +91,10 @@ class Kernel:
         steps, _, self.missing = plan((*wanted, "fit") if is_checked else wanted, known)
         compiled: list[Step] = []
         self.following: list[Step] = []
-        for step in steps:
-            formula = FORMULAS[step[0]]
+        for formula, guard in steps:
             is_compiled = formula.name in COMPILED and known.isdisjoint(formula.gives)
-            if is_compiled and _gives(self.following).isdisjoint(formula.takes):
-                compiled.append(step)
-            else:
-                self.following.append(step)
+            is_compiled = is_compiled and _gives(self.following).isdisjoint(formula.takes)
+            (compiled if is_compiled else self.following).append((formula, guard))
         given = _gives(compiled)
         inputs = _takes(compiled) - given
         needed = dict.fromkeys((*wanted, *_takes(self.following)))
@@ -109,17 +106,17 @@ class Kernel:
         changing = set(varying)
         once: list[Step] = []
         each: list[Step] = []
-        for name, guard in compiled:
-            if changing.isdisjoint(FORMULAS[name].takes):
-                once.append((name, 0))  # a later strip may have the pivots that the first lacks
+        for formula, guard in compiled:
+            if changing.isdisjoint(formula.takes):
+                once.append((formula, 0))  # a later strip may have the pivots that the first lacks
             else:
-                each.append((name, guard))
-                changing.update(FORMULAS[name].gives)
+                each.append((formula, guard))
+                changing.update(formula.gives)
         self._steps = once + each
         pairs = [
             *((ROWS[name], 0) for name in self.fixed),
             *((ROWS[name], 1) for name in self.changing),
-            *((NUMBERS[name], guard) for name, guard in self._steps),
+            *((NUMBERS[formula.name], guard) for formula, guard in self._steps),
             *((ROWS[name], kind) for name, kind in zip(self.results, self._kinds, strict=True)),
         ]
         sizes = (len(inputs), len(once), len(compiled), len(self.results), ROWS["fit"])
@@ -191,12 +188,12 @@ class Kernel:
 
 def _takes(steps: Sequence[Step]) -> set[str]:
     """Return the quantities that formulas take."""
-    return {x for name, _ in steps for x in FORMULAS[name].takes}
+    return {x for formula, _ in steps for x in formula.takes}
 
 
 def _gives(steps: Sequence[Step]) -> set[str]:
     """Return the quantities that formulas give."""
-    return {x for name, _ in steps for x in FORMULAS[name].gives}
+    return {x for formula, _ in steps for x in formula.gives}
 
 
 def _output_array(out: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Any:
@@ -225,12 +222,12 @@ def _check_overlap(*groups: tuple[Sequence[int], Sequence[Array]]) -> None:
 def run_formulas(steps: Sequence[Step], values: dict[str, Any]) -> None:
     """Add what formulas give to values, by numpy; a quantity that is there stays."""
     is_pivot = np.equal(values.get("MU", 0.0), PIVOT)
-    for name, guard in steps:
-        formula = FORMULAS[name]
+    for formula, guard in steps:
         if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
             quantities = [np.float64(1.0)] * len(formula.gives)  # not used
         else:
-            quantities = _functions[name](*[values[operand] for operand in formula.takes])
+            function = _functions[formula.name]
+            quantities = function(*[values[operand] for operand in formula.takes])
         for quantity, array in zip(formula.gives, quantities, strict=True):
             values.setdefault(quantity, array)
 

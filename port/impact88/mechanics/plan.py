@@ -68,8 +68,8 @@ class Formula(NamedTuple):
     tree: ast.FunctionDef
 
 
-Step = tuple[str, int]
-"""A formula's name, and its guard: 0 for none."""
+Step = tuple[Formula, int]
+"""A formula and its guard: 0 for none."""
 
 
 class Plan(NamedTuple):
@@ -77,7 +77,7 @@ class Plan(NamedTuple):
 
     Parameters
     ----------
-    steps : tuple of (str, int)
+    steps : tuple of (Formula, int)
         Formulas in an order in which each finds what it takes, with their guards.
     inputs : tuple of str
         Columns and known quantities that the steps take.
@@ -180,26 +180,25 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     everywhere = set(wanted)  # quantities that all scenes need
     inputs: set[str] = set()
     steps: list[Step] = []
-    for name in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
-        _, takes, gives, tree = FORMULAS[name]
-        used = {x for x in quantities.intersection(gives) if sources.get(x) == name}
+    for formula in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
+        used = {x for x in quantities.intersection(formula.gives) if sources.get(x) is formula}
         if used:
             is_guarded = everywhere.isdisjoint(used) and "MU" in known
-            guard = GUARDS.get(tree.name, 0) if is_guarded else 0
-            if not guard and tree.name not in SELECTING:
-                everywhere.update(takes)
-            steps.append((name, guard))
-            inputs |= known.intersection(takes)
-            quantities.update(takes)
+            guard = GUARDS.get(formula.tree.name, 0) if is_guarded else 0
+            if not guard and formula.tree.name not in SELECTING:
+                everywhere.update(formula.takes)
+            steps.append((formula, guard))
+            inputs |= known.intersection(formula.takes)
+            quantities.update(formula.takes)
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 
-def _sources(known: frozenset[str]) -> dict[str, str]:
+def _sources(known: frozenset[str]) -> dict[str, Formula]:
     """Return the formula to take for each quantity that follows from what is known.
 
     A formula is taken once all that it takes is there, so that no quantity leads to itself; one of
     `consequences` is taken when no further one of `formulas` can be."""
-    sources: dict[str, str] = {}
+    sources: dict[str, Formula] = {}
     pending = list(FORMULAS.values())
     while True:
         available = known.union(sources)
@@ -209,7 +208,7 @@ def _sources(known: frozenset[str]) -> dict[str, str]:
         pending.remove(ready)
         for quantity in ready.gives:
             if quantity not in known:
-                sources.setdefault(quantity, ready.name)
+                sources.setdefault(quantity, ready)
 
 
 def _lacking(quantity: str, known: frozenset[str]) -> tuple[str, ...]:
