@@ -417,8 +417,8 @@ def finite_inertia(M, MA, IA):
 
 def energy(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
     """Return the kinetic energy."""
-    KI = fa * dot(UX, UY, UX, UY) + fb * dot(VX, VY, VX, VY)
-    KI = 0.5 * (KI + (ja * wa * wa + jb * wb * wb))
+    turning = ja * wa * wa + jb * wb * wb
+    KI = 0.5 * (fa * dot(UX, UY, UX, UY) + fb * dot(VX, VY, VX, VY) + turning)
     return (KI,)
 
 
@@ -533,38 +533,49 @@ def friction_bits(MU, MUP, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, N
     one_way = one_way & (gn < 0.0) & (PN > 0.0)
     above = (above | backward & no_sliding) & one_way
     wrong = backward & ~no_sliding & (critical > 0.0) & one_way
-    of_friction = where(above, Status.FRICTION_ABOVE_CRITICAL, 0.0)
-    of_friction = of_friction + where(wrong, Status.FRICTION_WRONG_DIRECTION, 0.0)
+    of_friction = where(above, Status.FRICTION_ABOVE_CRITICAL, 0.0) + where(
+        wrong, Status.FRICTION_WRONG_DIRECTION, 0.0
+    )
     return (of_friction,)
 
 
-def range_bits(E, MU, MUP, em, da, at, db, bt):
-    """Return the bits of coefficients out of range, and of centers on the wrong side of the contact
-    plane."""
+def status(
+    E,
+    MU,
+    MUP,
+    em,
+    da,
+    at,
+    db,
+    bt,
+    gn,
+    PN,
+    KI,
+    EL,
+    COND,
+    VAX,
+    VAY,
+    VBX,
+    VBY,
+    WAF,
+    WBF,
+    of_friction,
+):
+    """Return the bits of `impact88.status.Status`; a comparison with NaN is false."""
     moment = (em < EM_MIN) | (em > EM_MAX) & (em != NO_MOMENT)
-    of_range = where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)
-    of_range = of_range + where(moment, Status.EM_OUT_OF_RANGE, 0.0)
-    of_range = of_range + where((MU != PIVOT) & (MUP <= PIVOT), Status.MU_OUT_OF_RANGE, 0.0)
-    of_range = of_range + where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
-    of_range = of_range + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
-    return (of_range,)
-
-
-def solution_bits(gn, PN, KI, EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):
-    """Return the bits of scenes that break a law, or have no solution, or nearly so; a comparison
-    with NaN is false."""
-    finite = fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF
-    finite = finite & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
-    of_solution = where(finite, 0.0, Status.NOT_FINITE)
-    of_solution = of_solution + where(COND < SINGULAR_FROM, 0.0, Status.SINGULAR)
-    of_solution = of_solution + where(gn >= 0.0, Status.SEPARATING, 0.0)
-    of_solution = of_solution + where(PN < 0.0, Status.PULLING, 0.0)
-    gained = -(EL + EL) > ENERGY_TOLERANCE * KI
-    of_solution = of_solution + where(gained, Status.ENERGY_GAINED, 0.0)
-    return (of_solution,)
-
-
-def status(of_range, of_friction, of_solution):
-    """Return the bits of `impact88.status.Status`."""
-    STATUS = of_range + of_friction + of_solution
+    finite = (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
+    finite = finite & (fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF)
+    STATUS = (
+        of_friction
+        + where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)
+        + where(moment, Status.EM_OUT_OF_RANGE, 0.0)
+        + where((MU != PIVOT) & (MUP <= PIVOT), Status.MU_OUT_OF_RANGE, 0.0)
+        + where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
+        + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
+        + where(gn >= 0.0, Status.SEPARATING, 0.0)
+        + where(PN < 0.0, Status.PULLING, 0.0)
+        + where(-(EL + EL) > ENERGY_TOLERANCE * KI, Status.ENERGY_GAINED, 0.0)
+        + where(COND < SINGULAR_FROM, 0.0, Status.SINGULAR)
+        + where(finite, 0.0, Status.NOT_FINITE)
+    )
     return (STATUS,)

@@ -84,9 +84,9 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     if (known.setdefault("M", np.array(BODIES)) == POINT).all():
         known.update(EM=np.array(0.0), PM=np.array(0.0))
     geometry, lacking = evaluate({n: known[n] for n in COLUMNS if n in known}, GEOMETRY)
-    missing = dict.fromkeys(name for names in lacking.values() for name in names)
+    missing = [*dict.fromkeys(name for names in lacking.values() for name in names)]
     pairs = list(zip(VELOCITIES, FINAL_STATE, strict=True))
-    missing.update({f"{a} or {b}": None for a, b in (*pairs, *LAWS) if not {a, b} & known.keys()})
+    missing += [f"{a} or {b}" for a, b in (*pairs, *LAWS) if not {a, b} & known.keys()]
     if missing:
         raise UserError(f"missing {', '.join(missing)}")
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
@@ -97,19 +97,17 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     changes = relative * _stack([[ma, ma, ia, mb, mb, ib]], shape)
     late = np.array([early not in known for early in VELOCITIES])
     full, delayed = _products(relative, changes), _products(relative[:, late], changes[:, late])
-    velocities_known = _stack(
-        [[known[b if is_late else a] for (a, b), is_late in zip(pairs, late, strict=True)]], shape
-    )
-    rows, right = _laws(known, _products(relative, velocities_known)[:, 0], full - delayed, delayed)
+    given = _stack([[known[a if a in known else b] for a, b in pairs]], shape)
+    rows, right = _laws(known, _products(relative, given)[:, 0], full - delayed, delayed)
     crosses = [_cross(rows[k - 2], rows[k - 1]) for k in range(3)]
     determinant = _dot(rows[0], crosses[0])
     impulse = [_dot(right, column) / determinant for column in zip(*crosses, strict=True)]
     values = {**known, **dict(zip(IMPULSES, impulse, strict=True))}
-    for (before, after), is_late, change in zip(pairs, late, _dot(impulse, changes), strict=True):
-        if is_late:
-            values[before] = known[after] - change
-        else:
+    for (before, after), change in zip(pairs, _dot(impulse, changes), strict=True):
+        if before in known:
             values[after] = known[before] + change
+        else:
+            values[before] = known[after] - change
     velocities = _stack([[values[x] for x in VELOCITIES], [values[x] for x in FINAL_STATE]], shape)
     g, separation = np.moveaxis(_products(relative, velocities), 1, 0)
     twist = separation[2] + impulse[2] * full[2, 2]
