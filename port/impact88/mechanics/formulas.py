@@ -470,8 +470,9 @@ def condition_number(MU, MUP, em, z, D, R, J, Ired, sn, st, an, at, bn, bt, ia, 
     st_ = fabs(at) + fabs(bt)
     kn_ = fabs(an) * ia + fabs(bn) * ib
     kt_ = fabs(at) * ia + fabs(bt) * ib
-    of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_))
-    of_s = of_s + fabs(em) * (Ired * kn_ * (kn_ + size * kt_))
+    of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_)) + fabs(em) * (
+        Ired * kn_ * (kn_ + size * kt_)
+    )
     of_p = z_ * R * (R + J * dot(sn, st, sn, st)) + fabs(em) * (
         R * Ired * dot(kn_, kt_, kn_, kt_)
         + J * fabs(cross(an, at, bn, bt)) * (ia + ib) * (fabs(an * bt) + fabs(at * bn))
@@ -486,10 +487,9 @@ def body_usability(M, MA, IA, UX, UY, WA):
     Masses and inertias are above 0; a point mass has no inertia.
     """
     turns = (M == 4.0) | (IA < INF)
-    good = (MA > 0.0) & ((M == 4.0) | (IA > 0.0)) & (turns | (WA == 0.0))
-    good = good & ((MA < INF) | (UX == 0.0) & (UY == 0.0))
-    free_a = where((MA < INF) & turns, 1.0, 0.0)
-    free_a = where(good, free_a, nan)
+    rests = ((MA < INF) | (UX == 0.0) & (UY == 0.0)) & (turns | (WA == 0.0))
+    good = (MA > 0.0) & ((M == 4.0) | (IA > 0.0)) & rests
+    free_a = where(good, where((MA < INF) & turns, 1.0, 0.0), nan)
     return (free_a,)
 
 
@@ -499,10 +499,9 @@ def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, UX, UY, WA, VX, VY, WB, 
     They are finite (a sum is finite where its terms are), and one body at most is infinite.
     """
     turns = fabs(PA) + fabs(PB) + fabs(TA) + fabs(TB)
-    good = (fabs(EM + DA + DB) < INF) & (turns < LARGEST_ANGLE) & (M == 6.0) | (M == 4.0)
-    good = good & (fabs(E + MU + UX + UY + WA + VX + VY + WB) < INF)
-    good = good & (fabs(GA) < LARGEST_ANGLE) & (free_a + free_b > 0.0)
-    fit = where(good, 1.0, 0.0)
+    body = (fabs(EM + DA + DB) < INF) & (turns < LARGEST_ANGLE) & (M == 6.0) | (M == 4.0)
+    finite = (fabs(E + MU + UX + UY + WA + VX + VY + WB) < INF) & (fabs(GA) < LARGEST_ANGLE)
+    fit = where(body & finite & (free_a + free_b > 0.0), 1.0, 0.0)
     return (fit,)
 
 
@@ -522,17 +521,23 @@ def friction_bits(MU, MUP, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, N
     along = where(Nt * sign < 0.0, -friction, friction)
     backward = along < -FRICTION_TOLERANCE
     no_sliding = (pushing > 0.0) & (critical <= FRICTION_TOLERANCE * pushing)
-    above = (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
+    beyond = (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
     turned = (an * at * ia + bn * bt * ib) * PN + kt * PM
     back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
     size = fabs(turned)
     excess = fabs(gt) + fabs(gt) - size
     gap = excess - back
-    one_way = (gt * turned >= 0.0) | (friction * gt >= 0.0) | (excess <= 0.0)
-    one_way = one_way | (excess >= 3.0 * size) | (gap < 0.0) | (gap * gap < 4.0 * (size * back))
-    one_way = one_way & (gn < 0.0) & (PN > 0.0)
-    above = (above | backward & no_sliding) & one_way
-    wrong = backward & ~no_sliding & (critical > 0.0) & one_way
+    one_way = (
+        (gt * turned >= 0.0)
+        | (friction * gt >= 0.0)
+        | (excess <= 0.0)
+        | (excess >= 3.0 * size)
+        | (gap < 0.0)
+        | (gap * gap < 4.0 * (size * back))
+    )
+    impossible = one_way & (gn < 0.0) & (PN > 0.0)
+    above = (beyond | backward & no_sliding) & impossible
+    wrong = backward & ~no_sliding & (critical > 0.0) & impossible
     of_friction = where(above, Status.FRICTION_ABOVE_CRITICAL, 0.0) + where(
         wrong, Status.FRICTION_WRONG_DIRECTION, 0.0
     )
@@ -563,8 +568,8 @@ def status(
 ):
     """Return the bits of `impact88.status.Status`; a comparison with NaN is false."""
     moment = (em < EM_MIN) | (em > EM_MAX) & (em != NO_MOMENT)
-    finite = (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
-    finite = finite & (fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF)
+    moves = fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF
+    finite = moves & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
     STATUS = (
         of_friction
         + where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)

@@ -90,7 +90,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     if missing:
         raise UserError(f"missing {', '.join(missing)}")
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
-    s, c, an, at, bn, bt, ma, mb, ia, ib = (geometry[name] for name in GEOMETRY)
+    s, c, an, at, bn, bt, ma, mb, ia, ib = geometry.values()
     # relative velocities along n and t, and of the spins, by unit velocities
     relative = _stack([[c, s, an, -c, -s, bn], [-s, c, at, s, -c, bt], [0, 0, 1, 0, 0, -1]], shape)
     # changes of velocities by unit impulses

@@ -15,17 +15,14 @@ from .plan import COLUMNS, COMPILED, FUNCTIONS, ROWS, SOURCE, Formula
 
 
 def statements(formula: Formula) -> list[str]:
-    """Return a function's statements in C; a name that is assigned again keeps its variable."""
+    """Return a function's statements in C."""
     lines: list[str] = []
-    variables = set(formula.takes)
     for line in formula.tree.body:
         match line:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+            case ast.Assign(targets=[ast.Name()], value=value):
                 operator = getattr(value, "op", value)
                 is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
-                kind = "int64_t " if is_condition else "double "
-                lines.append(f"{kind * (name not in variables)}{ast.unparse(line)};")
-                variables.add(name)
+                lines.append(f"{'int64_t' if is_condition else 'double'} {ast.unparse(line)};")
             case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Call() as call):
                 places = [f"&{ast.unparse(name)}" for name in names]
                 lines.append(f"double {', '.join(map(ast.unparse, names))};")
