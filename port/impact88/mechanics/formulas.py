@@ -211,21 +211,19 @@ def signed_friction(MU, gt):
 # -- the impulse
 
 
-def friction_arms(MUP, an, at, bn, bt, sn, st, kn, kt):
-    """Return the arms of an impulse of 1 along n and MUP along t."""
+def sliding_impulse(
+    MUP, em, z, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn, w
+):
+    """Return the determinant, and Pn and h times it, for Pt = MUP Pn; and the arms of an impulse of
+    1 along n and MUP along t."""
     af = an + MUP * at
     bf = bn + MUP * bt
     sf = sn + MUP * st
     kf = kn + MUP * kt
-    return af, bf, sf, kf
-
-
-def sliding_impulse(em, z, R, J, Ired, sn, kn, af, bf, sf, kf, from_a, from_b, mean, turn, w):
-    """Return the determinant, and Pn and h times the determinant, for Pt = MUP Pn."""
     D_s = z * (R + J * sn * sf) - em * (Ired * kn * kf)
     Pn_s = em * kn * turn - z * (w + sn * mean)
     h_s = Ired * kf * w - R * turn - sn * cross(bf, af, from_b, from_a)
-    return D_s, Pn_s, h_s
+    return D_s, Pn_s, h_s, af, bf, sf, kf
 
 
 def pivot_impulse(

@@ -40,7 +40,6 @@ GUARDS = {
     "pivot_impulse": PIVOTS,
     "pivot_state": PIVOTS,
     "pivot_spin": PIVOTS,
-    "friction_arms": OTHERS,
     "sliding_impulse": OTHERS,
     "sliding_spins": OTHERS,
 }
