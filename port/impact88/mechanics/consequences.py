@@ -9,8 +9,7 @@ from here where `formulas` does not give it, or needs what is not known.
 import numpy as np
 from numpy import arctan2, ceil, degrees, hypot, where
 
-from ..names import PIVOT
-from .formulas import cross, dot, sine_and_cosine
+from .formulas import cross, dot, signed_friction, sine_and_cosine
 
 REST_TOLERANCE = 1e-9
 """A body whose final speed is below this fraction of its initial one is at rest: that much of the
@@ -136,8 +135,8 @@ def impulse_ratio(PN, PT):
 
 
 def typed_friction(MUP, gt):
-    """Return the MU of which line 400 makes a signed friction."""
-    MU = where((gt > 0.0) & (MUP != PIVOT), -MUP, MUP)
+    """Return the MU of which line 400 makes a signed friction: it would make MU of that again."""
+    (MU,) = signed_friction(MUP, gt)
     return (MU,)
 
 

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import UserError
 from ..names import FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from .consequences import typed_friction
 from .solve import BODIES, POINT, evaluate
 
 Floats = NDArray[np.float64]
@@ -117,8 +118,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
         if name not in known:
             values[name] = dividend / divisor
             volume = volume - np.log(np.abs(divisor))
-    mu = values["MUP"]
-    values["MU"] = np.where((g[1] > 0.0) & (mu != PIVOT), -mu, mu)
+    (values["MU"],) = typed_friction(values["MUP"], g[1])
     (a, b, c), _ = _laws(values, g, full, np.zeros((3, 1)))
     return Completed(values, volume + np.log(np.abs(_dot(a, _cross(b, c)))))
 

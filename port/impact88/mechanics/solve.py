@@ -160,9 +160,10 @@ def evaluate(
     if kernel.following:
         run_formulas(kernel.following, values)
     results = {name: values[name] for name in names if name not in kernel.missing}
-    for name, array in results.items():
-        if array.shape != shape:
-            results[name] = np.broadcast_to(array, shape)
+    results = {
+        name: array if array.shape == shape else np.broadcast_to(array, shape)
+        for name, array in results.items()
+    }
     return results, kernel.missing
 
 
