@@ -2,16 +2,15 @@
 
 It shares nothing with `formulas`. The impulse (Pn, Pt, M) solves Equations 15, 16 (or no slip at
 separation) and 18 by Cramer's rule with so many digits that nothing is lost; everything else
-follows from the impulse, and what cancels to less than 50 digits is 0. To add a result, add its
-line where `results` says so.
+follows from the impulse, and what cancels to less than 50 digits is 0. Without mpmath the import of
+this module is a UserError. To add a result, add its line where `_results` says so.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .. import errors
 from ..decimals import exact
-from ..errors import UserError
+from ..errors import UserError, library
 from ..names import FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 
 DIGITS = 50  # correct digits: three times a double's
@@ -19,12 +18,8 @@ WRITTEN = 30  # digits of a text; the chapter's worked cases have as many
 GUARD = 15  # further working digits, to which those for the spread of a scene's numbers are added
 UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM", "WA", "WB")  # by point masses
 
+mpmath: Any = library("mpmath", "oracle", "the reference in 50 digits")
 Number = Any  # mpmath.mpf, which has no usable type
-
-
-def _mpmath() -> Any:
-    """Return mpmath. Raises UserError where it is not installed."""
-    return errors.library("mpmath", "oracle", "the reference in 50 digits")
 
 
 def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
@@ -43,14 +38,13 @@ def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
     Raises
     ------
     UserError
-        For a text that is no number, and where mpmath is not installed.
+        For a text that is no number.
 
     Examples
     --------
     >>> thirty_digits(impact88.sample(1))["VAX"]
     '-13.262655683532704239235175342'
     """
-    mpmath = _mpmath()
     try:
         values = results(scene)
     except ZeroDivisionError:  # a mass of 0
@@ -77,7 +71,6 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
     dict of str to mpf
         Results that have a value: none where the equations are singular.
     """
-    mpmath = _mpmath()
     with mpmath.workdps(GUARD):
         sizes = [abs(_number(x)) for name, x in scene.items() if name not in ("MU", "M")]
         powers = [int(mpmath.log10(x)) for x in sizes if x and mpmath.isfinite(x)]
@@ -88,7 +81,6 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
 
 def _number(value: str | float) -> Number:
     """Return a number at the working precision. Raises UserError for a text that is none."""
-    mpmath = _mpmath()
     if not isinstance(value, str):
         return mpmath.mpf(value)
     try:
@@ -100,7 +92,6 @@ def _number(value: str | float) -> Number:
 
 def _total(*terms: Number) -> Number:
     """Return a sum; 0 where it is nothing but rounding."""
-    mpmath = _mpmath()
     total = mpmath.fsum(terms)
     noise = max(map(abs, terms)) * mpmath.mpf(10) ** -DIGITS
     return total if abs(total) > noise else mpmath.mpf(0)
@@ -128,7 +119,6 @@ def _solve_three(rows: Sequence[Sequence[Number]], right: Sequence[Number]) -> l
 
 def _results(scene: dict[str, Number]) -> dict[str, Number]:
     """Return the results of a scene's numbers."""
-    mpmath = _mpmath()
     g = scene
     is_point, is_pivot = g.get("M", 6) == 4, g["MU"] == PIVOT
     if is_point:
@@ -196,5 +186,4 @@ def _results(scene: dict[str, Number]) -> dict[str, Number]:
 
 def _vector(length: Number, degrees: Number) -> tuple[Number, Number]:
     """Return the vector of a length and a direction."""
-    mpmath = _mpmath()
     return length * mpmath.cospi(degrees / 180), length * mpmath.sinpi(degrees / 180)

@@ -344,8 +344,7 @@ def _as_doubles(name: str, value: Any) -> Any:
     if kind is float or (kind is np.ndarray and value.dtype == np.float64):
         return value
     if isinstance(value, np.ma.MaskedArray):
-        floats: Any = value.astype(np.float64)
-        value = floats.filled(np.nan)
+        value = np.ma.filled(value.astype(np.float64), np.nan)
     try:
         array = np.asarray(value)
     except ValueError:
