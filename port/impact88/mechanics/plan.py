@@ -26,13 +26,13 @@ BODIES = (
     "DVBR PDOFB mb ib fb jb wb bn bt bx by db angle_b part_b own_b given_b wb_s wb_p state_b "
     "free_b front_b",
 )
-"""Quantities of A, and the same ones of B."""
+"""Quantities of A, and the same ones of B: what gives some of A's alone gives B's, too."""
 TIMES = (
     "UX UY WA VX VY WB wa wb SA SB XA YA XB YB KI cn ct gn gt",
     "VAX VAY WAF VBX VBY WBF waf wbf SAF SBF XAF YAF XBF YBF KF cn_after ct_after gn_after "
     "gt_after",
 )
-"""Quantities before the impact, and the same ones after it."""
+"""Quantities before the impact, and the same ones after it, given likewise."""
 
 PIVOTS = 1  # guard of a formula that only pivots need
 OTHERS = 2  # of one that only the other scenes need

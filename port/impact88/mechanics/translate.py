@@ -74,9 +74,9 @@ def header() -> str:
 
 def digest() -> str:
     """Return a digest of the functions: a library that has it was built from these."""
-    return hashlib.sha256(
-        (ast.unparse(SOURCE) + str([PIVOT, *Status, *ROWS])).encode()
-    ).hexdigest()[:16]
+    flow = [(formula.takes, formula.gives) for formula in COMPILED.values()]
+    text = ast.unparse(SOURCE) + str([PIVOT, *Status, *COLUMNS, *flow])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 if __name__ == "__main__":
