@@ -27,8 +27,8 @@ Floats = NDArray[np.float64]
 
 LAWS = (("E", "PN"), ("MUP", "PT"), ("EM", "PM"))
 """Coefficient and impulse of Equations 15, 16 and 18."""
-GEOMETRY = ("s", "c", "an", "at", "bn", "bt", "ma", "mb", "ia", "ib")
-COLUMNS = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA", "M")
+COLUMNS = "MA MB IA IB DA DB PA PB TA TB GA M".split()
+GEOMETRY = "s c an at bn bt ma mb ia ib"
 
 
 class Completed(NamedTuple):
