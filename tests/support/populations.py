@@ -114,7 +114,7 @@ def heavy(rng: Generator, count: int) -> Columns:
 def singular(rng: Generator, count: int) -> Columns:
     g = casework(rng, 4 * count)
     # the determinant is linear in MU
-    at_0, at_1 = (_quantity({**g, "mu": np.full(4 * count, mu)}, "D_s") for mu in (0.0, 1.0))
+    at_0, at_1 = (_quantity({**g, "MUP": np.full(4 * count, mu)}, "D_s") for mu in (0.0, 1.0))
     critical = at_0 / (at_0 - at_1)
     factor = 1 + _powers(rng, -9, -1, 4 * count) * rng.choice([-1, 1], 4 * count)
     g["MU"] = np.where(_quantity(g, "gt") > 0, -critical, critical) * factor

@@ -104,7 +104,7 @@ def replay_velocities(cells: Mapping[str, list[str]]) -> Floats:
 
 def lapack(columns: Columns) -> Floats:
     """Return the final velocities by LAPACK from the listing's equations, lines 300 to 560."""
-    quantities = evaluate(columns, ("s", "c", "D1", "D2", "D3", "D4", "mu"))[0].values()
+    quantities = evaluate(columns, ("s", "c", "D1", "D2", "D3", "D4", "MUP"))[0].values()
     sine, cosine, d1, d2, d3, d4, mu = quantities
     names = ("MA", "MB", "IA", "IB", "EM", "UX", "UY", "WA", "VX", "VY", "WB")
     ma, mb, ia, ib, em, ux, uy, wa, vx, vy, wb = (columns[name] for name in names)

@@ -1,20 +1,22 @@
 """The planar impact of two bodies: every formula, once.
 
 Each function computes a few quantities from others; its parameters are their names, so that a
-result needs exactly the functions that lead to it (`plan`). numpy runs a function over arrays
-unchanged, and `translate` prints it as a C loop. Bodies are therefore assignments of ``+ - * /``,
-comparisons, ``& | ~``, `where`, `fabs`, `sqrt` and bits of `Status`, one name each, with decimal
-points in all numbers; the last line returns the quantities that others may use, which are numbers,
-never conditions. To add a result, write its function here, its row in `names.RESULTS` and its line
-in `reference`.
+result needs exactly the functions that lead to it (`plan`). One that gives quantities of A alone is
+B's formula, too, and one that gives quantities before the impact alone holds after it: `plan` has
+the names to exchange. numpy runs a function over arrays unchanged, and `translate` prints it as a C
+loop. Bodies are therefore assignments of ``+ - * /``, comparisons, ``& | ~``, `where`, `fabs`,
+`sqrt`, the functions under "vectors" and bits of `Status`, one name each, with decimal points in
+all numbers; the last line returns the quantities that others may use, which are numbers, never
+conditions. To add a result, write its function here, its row in `names.RESULTS` and its line in
+`reference`.
 
 Axes and signs: n = (cos GA, sin GA) and t = (-sin GA, cos GA), A on the +n side; the impulse acts
 on A, and its opposite on B. Lower-case names: s, c sine and cosine of GA; ma, mb, ia, ib inverse
 masses and inertias, 0 for a rigid barrier; an, at, bn, bt what a unit of spin adds to the velocity
 of a contact point relative to the other's, along n and t; wa, wb, waf, wbf, em spins and EM, 0 for
-point masses (M = 4), which have no arms and no moment; mu MU with the sign that line 400 gives it;
-gn, gt relative velocity of the contact points before, A's minus B's, and cn, ct that of the
-centers.
+point masses (M = 4), which have no arms and no moment; gn, gt relative velocity of the contact
+points before, A's minus B's, and cn, ct that of the centers. MUP is MU with the sign that line 400
+gives it.
 
 Method: the impulse is the unknown. It has a normal part Pn, a tangential part Pt and a moment
 PM = (1 - em) h. Velocities after are those before plus impulse times inverse mass (Equations 13, 14
@@ -26,15 +28,15 @@ change, and a difference. With R = ma + mb, J = 1/(Ia + Ib), Ired = Ia Ib J, s =
 b/Ib, of both directions, w = e gn + cn and turn = Ired (wa - wb)::
 
     (R + J sn sn) Pn +      J sn st Pt + em kn h = -(w + sn mean)
-         J st sn Pn + (R + J st st) Pt + em kt h = -(ct + st mean)      pivot; or Pt = mu Pn
+         J st sn Pn + (R + J st st) Pt + em kt h = -(ct + st mean)      pivot; or Pt = MUP Pn
           Ired kn Pn +      Ired kt Pt +    z h = -turn
 
-For -1 <= em <= 0 both determinants are sums of terms of one sign (that of sliding while mu is
-small): nothing cancels, however long the arms are and however unequal the bodies.
+For -1 <= em <= 0 both determinants are sums of terms of one sign (that of sliding while MUP
+is small): nothing cancels, however long the arms are and however unequal the bodies.
 """
 
 from numpy import absolute as fabs
-from numpy import inf, sqrt, where
+from numpy import inf, nan, sqrt, where
 
 from ..names import PIVOT
 from ..status import Status
@@ -68,27 +70,40 @@ def sine_and_cosine(degrees):
     k = quarters - 4.0 * (0.25 * quarters + ROUND - ROUND)  # -2 ... 2
     r = (degrees - 90.0 * quarters) * RADIAN
     q = r * r
-    sin_r = r + r * q * (
-        -1.66666666666666324348e-01
-        + q * (8.33333333332248946124e-03
-        + q * (-1.98412698298579493134e-04
-        + q * (2.75573137070700676789e-06
-        + q * (-2.50507602534068634195e-08
-        + q * 1.58969099521155010221e-10))))
+    sin_r = r - r * q * (
+        1.66666666666666324348e-01
+        - q * (8.33333333332248946124e-03
+        - q * (1.98412698298579493134e-04
+        - q * (2.75573137070700676789e-06
+        - q * (2.50507602534068634195e-08
+        - q * 1.58969099521155010221e-10))))
     )  # fmt: skip
     cos_r = 1.0 - (0.5 * q - q * q * (
         4.16666666666666019037e-02
-        + q * (-1.38888888888741095749e-03
-        + q * (2.48015872894767294178e-05
-        + q * (-2.75573143513906633035e-07
-        + q * (2.08757232129817482790e-09
-        + q * -1.13596475577881948265e-11))))
+        - q * (1.38888888888741095749e-03
+        - q * (2.48015872894767294178e-05
+        - q * (2.75573143513906633035e-07
+        - q * (2.08757232129817482790e-09
+        - q * 1.13596475577881948265e-11))))
     ))  # fmt: skip
     sin_k = k * (2.0 - fabs(k))
     cos_k = 1.0 - fabs(k)
     sine = sin_k * cos_r + cos_k * sin_r
     cosine = cos_k * cos_r - sin_k * sin_r
     return sine, cosine
+
+
+# -- vectors
+
+
+def dot(x, y, u, v):
+    """Return the inner product of (x, y) and (u, v)."""
+    return x * u + y * v
+
+
+def cross(x, y, u, v):
+    """Return the cross product of (x, y) and (u, v)."""
+    return x * v - y * u
 
 
 # -- the scene
@@ -101,18 +116,16 @@ def moment_coefficient(M, EM):
     return em, z
 
 
-def body_spins(M, WA, WB):
-    """Return the initial spins, 0 for point masses."""
+def body_spin(M, WA):
+    """Return the spin, 0 for point masses."""
     wa = where(M == 4.0, 0.0, WA)
-    wb = where(M == 4.0, 0.0, WB)
-    return wa, wb
+    return (wa,)
 
 
-def inverse_inertias(M, IA, IB):
-    """Return the inverse inertias, 1 for point masses: they have no spin to act on."""
+def inverse_inertia(M, IA):
+    """Return the inverse inertia, 1 for point masses: they have no spin to act on."""
     ia = where(M == 4.0, 1.0, 1.0 / IA)
-    ib = where(M == 4.0, 1.0, 1.0 / IB)
-    return ia, ib
+    return (ia,)
 
 
 def contact_normal(GA):
@@ -121,36 +134,20 @@ def contact_normal(GA):
     return s, c
 
 
-def arm_direction_a(M, DA, PA, TA):
-    """Return the length and the direction of A's arm."""
+def arm_direction(M, DA, PA, TA):
+    """Return the length and the direction of the arm."""
     point = M == 4.0
     da = where(point, 0.0, DA)
     angle_a = where(point, 0.0, PA + TA)
     return da, angle_a
 
 
-def arm_direction_b(M, DB, PB, TB):
-    """Return the length and the direction of B's arm."""
-    point = M == 4.0
-    db = where(point, 0.0, DB)
-    angle_b = where(point, 0.0, PB + TB)
-    return db, angle_b
-
-
-def lever_arm_a(da, angle_a, GA):
-    """Return what a unit of A's spin adds to the relative velocity along n and t."""
+def lever_arm(da, angle_a, GA):
+    """Return what a unit of spin adds to the relative velocity along n and t."""
     sine, cosine = sine_and_cosine(angle_a - GA)
     an = da * sine
     at = -(da * cosine)
     return an, at
-
-
-def lever_arm_b(db, angle_b, GA):
-    """Return what a unit of B's spin adds to the relative velocity along n and t."""
-    sine, cosine = sine_and_cosine(angle_b - GA)
-    bn = db * sine
-    bt = -(db * cosine)
-    return bn, bt
 
 
 def inverse_masses(MA, MB):
@@ -189,95 +186,80 @@ def mean_spin(wa, wb, part_a, part_b, Ired):
 
 
 def relative_velocity(UX, UY, VX, VY, s, c, an, at, bn, bt, wa, wb):
-    """Return the relative velocity before, of the centers and of the contact points."""
+    """Return the relative velocity, of the centers and of the contact points."""
     dx = UX - VX
     dy = UY - VY
-    cn = c * dx + s * dy
-    ct = c * dy - s * dx
-    gn = cn + (an * wa + bn * wb)
-    gt = ct + (at * wa + bt * wb)
+    cn = dot(c, s, dx, dy)
+    ct = cross(c, s, dx, dy)
+    gn = cn + dot(an, bn, wa, wb)
+    gt = ct + dot(at, bt, wa, wb)
     return cn, ct, gn, gt
+
+
+def normal_change(E, cn, gn):
+    """Return what the impulse changes of the velocity along n, but for spins."""
+    w = E * gn + cn
+    return (w,)
 
 
 def signed_friction(MU, gt):
     """Return MU after line 400: friction opposes the sliding; on a tie the sign stays."""
-    mu = where(gt > 0.0, -MU, MU)
-    return (mu,)
+    MUP = where((gt > 0.0) & (MU != PIVOT), -MU, MU)
+    return (MUP,)
 
 
 # -- the impulse
 
 
 def sliding_impulse(
-    E, mu, em, z, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn, cn, gn
+    MUP, em, z, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn, w
 ):
-    """Return the determinant, Pn and h for Pt = mu Pn."""
-    w = E * gn + cn
-    s_mu = sn + mu * st
-    k_mu = kn + mu * kt
-    D_s = z * (R + J * sn * s_mu) - em * (Ired * kn * k_mu)
-    Pn_s = (em * kn * turn - z * (w + sn * mean)) / D_s
-    X = (bn + mu * bt) * from_a - (an + mu * at) * from_b
-    h_s = (Ired * k_mu * w - R * turn - sn * X) / D_s
-    return D_s, Pn_s, h_s
+    """Return the determinant, and Pn and h times it, for Pt = MUP Pn; and the arms of an impulse of
+    1 along n and MUP along t."""
+    af = an + MUP * at
+    bf = bn + MUP * bt
+    sf = sn + MUP * st
+    kf = kn + MUP * kt
+    D_s = z * (R + J * sn * sf) - em * (Ired * kn * kf)
+    Pn_s = em * kn * turn - z * (w + sn * mean)
+    h_s = Ired * kf * w - R * turn - sn * cross(bf, af, from_b, from_a)
+    return D_s, Pn_s, h_s, af, bf, sf, kf
 
 
 def pivot_impulse(
-    E,
-    em,
-    z,
-    R,
-    J,
-    Ired,
-    sn,
-    st,
-    kn,
-    kt,
-    an,
-    at,
-    bn,
-    bt,
-    ia,
-    ib,
-    from_a,
-    from_b,
-    mean,
-    turn,
-    cn,
-    ct,
-    gn,
+    em, z, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, ia, ib, from_a, from_b, mean, turn, ct, w
 ):
-    """Return the determinant, Pn and Pt times the determinant, and h for no slip at separation.
+    """Return the determinant, and Pn, Pt and h times it, for no slip at separation.
 
     The determinant is R times a sum of squares; ``lever`` is the cross product of k and s without
     the difference of its products.
     """
-    w = E * gn + cn
-    axb = an * bt - at * bn
-    lever = (ia + ib) * axb  # k x s, without the difference of products
-    sxw = sn * ct - st * w
-    along_k = em * (Ired * (kn * ct - kt * w) + axb * mean)  # along k turned by a quarter
+    axb = cross(an, at, bn, bt)
+    lever = (ia + ib) * axb
+    sxw = cross(sn, st, w, ct)
+    along_k = em * (Ired * cross(kn, kt, w, ct) + axb * mean)  # along k turned by a quarter
     along_s = z * J * sxw + em * turn * J * lever  # along s turned by a quarter
     of_masses = z * R
     of_twist = em * turn * R
-    D_p = of_masses * (R + J * (sn * sn + st * st)) - em * (
-        R * Ired * (kn * kn + kt * kt) + J * axb * lever
+    D_p = of_masses * (R + J * dot(sn, st, sn, st)) - em * (
+        R * Ired * dot(kn, kt, kn, kt) + J * axb * lever
     )
     Nn = of_twist * kn - of_masses * (w + sn * mean) + st * along_s - kt * along_k
     Nt = of_twist * kt - of_masses * (ct + st * mean) - sn * along_s + kn * along_k
-    Xn = bn * from_a - an * from_b
-    Xt = bt * from_a - at * from_b
-    h_p = (R * (Ired * (kn * w + kt * ct) - R * turn - (sn * Xn + st * Xt)) - J * axb * sxw) / D_p
+    Xn = cross(bn, an, from_b, from_a)
+    Xt = cross(bt, at, from_b, from_a)
+    twist = Ired * dot(kn, kt, w, ct) - R * turn - dot(sn, st, Xn, Xt)
+    h_p = R * twist - J * axb * sxw
     return D_p, Nn, Nt, h_p
 
 
-def impulse(MU, mu, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
+def impulse(MU, MUP, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
     """Return the impulse, h and the determinant."""
     pivot = MU == PIVOT
-    PN = where(pivot, Nn / D_p, Pn_s)
-    PT = where(pivot, Nt / D_p, mu * Pn_s)
-    h = where(pivot, h_p, h_s)
     D = where(pivot, D_p, D_s)
+    PN = where(pivot, Nn, Pn_s) / D
+    PT = where(pivot, Nt / D, MUP * PN)
+    h = where(pivot, h_p, h_s) / D
     return PN, PT, h, D
 
 
@@ -291,51 +273,42 @@ def moment_impulse(M, em, h):
 
 
 def velocity_changes(PN, PT, s, c, ma, mb):
-    """Return A's velocity change along x and y, and the reverse of B's."""
+    """Return the velocity changes along x and y."""
     Px = c * PN - s * PT
     Py = s * PN + c * PT
     ax = ma * Px
     ay = ma * Py
-    bx = mb * Px
-    by = mb * Py
+    bx = -(mb * Px)
+    by = -(mb * Py)
     return ax, ay, bx, by
 
 
-def final_velocities(UX, UY, VX, VY, ax, ay, bx, by):
-    """Return the final velocities (Equations 13 and 14)."""
+def final_velocity(UX, UY, ax, ay):
+    """Return the final velocity (Equations 13 and 14)."""
     VAX = UX + ax
     VAY = UY + ay
-    VBX = VX - bx
-    VBY = VY - by
-    return VAX, VAY, VBX, VBY
+    return VAX, VAY
 
 
 def spin_weights(em, z, part_a, part_b):
-    """Return the weights of a body's own and the other's spin in its final spin."""
-    q = 1.0 - em
+    """Return the weights of a body's spin in its own final spin, and in the other's."""
     own_a = z * part_a - em * part_b
-    own_b = z * part_b - em * part_a
-    given_a = q * part_a
-    given_b = q * part_b
-    return own_a, own_b, given_a, given_b
+    given_a = (1.0 - em) * part_a
+    return own_a, given_a
 
 
 def sliding_spins(
-    E,
-    mu,
     em,
     z,
     R,
     J,
     Ired,
-    sn,
-    st,
-    kn,
-    kt,
     an,
-    at,
     bn,
-    bt,
+    af,
+    bf,
+    sf,
+    kf,
     ia,
     ib,
     wa,
@@ -344,87 +317,63 @@ def sliding_spins(
     own_b,
     given_a,
     given_b,
-    cn,
-    gn,
-    D_s,
+    w,
 ):
-    """Return the final spins of sliding bodies (Equation 17).
+    """Return the final spins of sliding bodies (Equation 17), times the determinant.
 
     They are not computed from the impulse, whose parts cancel where arms are far longer than radii
     of gyration.
     """
-    w = E * gn + cn
-    a = an + mu * at
-    b = bn + mu * bt
-    push = z * J * (sn + mu * st)
-    twist = em * Ired * (kn + mu * kt)
-    cross = em * (a * ia * wb - b * ib * wa)
-    wa_s = (R * (own_a * wa + given_b * wb) - w * (push - ia * twist) + bn * cross) / D_s
-    wb_s = (R * (own_b * wb + given_a * wa) - w * (push + ib * twist) - an * cross) / D_s
+    push = z * J * sf
+    twist = em * Ired * kf
+    change = em * (af * ia * wb - bf * ib * wa)
+    wa_s = R * dot(own_a, given_b, wa, wb) - w * (push - ia * twist) + bn * change
+    wb_s = R * dot(own_b, given_a, wb, wa) - w * (push + ib * twist) - an * change
     return wa_s, wb_s
 
 
-def pivot_spins(
-    E, em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b, given_a, given_b, cn, ct, gn, D_p
-):
-    """Return the final spins of bodies without slip at separation."""
-    w = E * gn + cn
-    ab = an * bn + at * bt
-    state_a = R * wa - ia * (an * w + at * ct)
-    state_b = R * wb - ib * (bn * w + bt * ct)
-    turn_a = em * (ab * ia * wb - (bn * bn + bt * bt) * ib * wa)
-    turn_b = em * (ab * ib * wa - (an * an + at * at) * ia * wb)
-    lever = em * J * (ia + ib) * (an * bt - at * bn)
-    wa_p = R * (own_a * state_a + given_b * state_b + turn_a) - lever * (bn * ct - bt * w)
-    wb_p = R * (own_b * state_b + given_a * state_a + turn_b) + lever * (an * ct - at * w)
-    wa_p = wa_p / D_p
-    wb_p = wb_p / D_p
-    return wa_p, wb_p
+def pivot_state(R, ia, wa, an, at, ct, w):
+    """Return R times the spin that the impulse between point masses would leave."""
+    state_a = R * wa - ia * dot(an, at, w, ct)
+    return (state_a,)
 
 
-def final_spins(M, MU, WA, WB, wa_s, wb_s, wa_p, wb_p):
-    """Return the final spins; those of point masses pass through."""
-    point = M == 4.0
-    pivot = MU == PIVOT
-    WAF = where(point, WA, where(pivot, wa_p, wa_s))
-    WBF = where(point, WB, where(pivot, wb_p, wb_s))
-    return WAF, WBF
+def pivot_spin(em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, given_b, state_a, state_b, ct, w):
+    """Return the final spin without slip at separation, times the determinant."""
+    turn = em * (dot(an, at, bn, bt) * ia * wb - dot(bn, bt, bn, bt) * ib * wa)
+    lever = em * J * (ia + ib) * cross(an, at, bn, bt)
+    wa_p = R * (dot(own_a, given_b, state_a, state_b) + turn) - lever * cross(bn, bt, w, ct)
+    return (wa_p,)
 
 
-def final_slip(MU, s, c, VAX, VAY, VBX, VBY, at, bt, waf, wbf):
-    """Return the sliding at separation."""
-    gt_after = c * (VAY - VBY) - s * (VAX - VBX) + (at * waf + bt * wbf)
-    gt_after = where(MU == PIVOT, 0.0, gt_after)
-    return (gt_after,)
+def final_spin(M, MU, WA, wa_s, wa_p, D):
+    """Return the final spin; that of a point mass passes through."""
+    WAF = where(M == 4.0, WA, where(MU == PIVOT, wa_p, wa_s) / D)
+    return (WAF,)
 
 
-def contact_offsets(da, angle_a, db, angle_b):
-    """Return the arms along x and y, d3 d4 d1 d2 of line 330: what is 0 there is 0."""
-    sin_a, cos_a = sine_and_cosine(angle_a)
-    sin_b, cos_b = sine_and_cosine(angle_b)
-    D3 = da * sin_a
-    D4 = da * cos_a
-    D1 = db * sin_b
-    D2 = db * cos_b
-    return D3, D4, D1, D2
+def contact_offset(da, angle_a):
+    """Return the arm along x and y, d3 d4 d1 d2 of line 330: what is 0 there is 0."""
+    sine, cosine = sine_and_cosine(angle_a)
+    D3 = da * sine
+    D4 = da * cosine
+    return D3, D4
 
 
-def contact_velocities_before(UX, UY, VX, VY, D1, D2, D3, D4, wa, wb):
-    """Return the contact points' velocities before the impact (line 340)."""
-    XA = UX + D3 * wa
-    YA = UY - D4 * wa
-    XB = VX - D1 * wb
-    YB = VY + D2 * wb
-    return XA, YA, XB, YB
+def contact_point(D1, D2, D3, D4):
+    """Return the contact point from the centers of gravity."""
+    CAX = -D4
+    CAY = -D3
+    CBX = D2
+    CBY = D1
+    return CAX, CAY, CBX, CBY
 
 
-def contact_velocities_after(VAX, VAY, VBX, VBY, D1, D2, D3, D4, WAF, WBF):
-    """Return the contact points' velocities after the impact (lines 700, 710)."""
-    XAF = VAX + D3 * WAF
-    YAF = VAY - D4 * WAF
-    XBF = VBX - D1 * WBF
-    YBF = VBY + D2 * WBF
-    return XAF, YAF, XBF, YBF
+def contact_velocity(UX, UY, wa, CAX, CAY):
+    """Return the contact point's velocity (lines 340, 700 and 710)."""
+    XA = UX - CAY * wa
+    YA = UY + CAX * wa
+    return XA, YA
 
 
 def closing_speed(gn):
@@ -439,17 +388,10 @@ def separation_speed(E, gn):
     return (VS,)
 
 
-def delta_v(ax, ay, bx, by):
-    """Return the sizes of the velocity changes."""
-    DVA = sqrt(ax * ax + ay * ay)
-    DVB = sqrt(bx * bx + by * by)
-    return DVA, DVB
-
-
-def printed_friction(MU, mu):
-    """Return the friction coefficient as line 680 prints it."""
-    MUP = where(MU == PIVOT, PIVOT, mu)
-    return (MUP,)
+def delta_v(ax, ay):
+    """Return the size of the velocity change."""
+    DVA = sqrt(dot(ax, ay, ax, ay))
+    return (DVA,)
 
 
 def critical_friction(Nn, Nt):
@@ -461,38 +403,21 @@ def critical_friction(Nn, Nt):
 # -- energies
 
 
-def finite_inertias(M, MA, MB, IA, IB):
-    """Return masses and inertias with a finite number for infinite ones.
+def finite_inertia(M, MA, IA):
+    """Return mass and inertia with a finite number for infinite ones.
 
     An infinite body is at rest: times 0 any number will do. Point masses have no inertia.
     """
     fa = where(MA < INF, MA, LARGEST)
-    fb = where(MB < INF, MB, LARGEST)
-    ja = where(IA < INF, IA, LARGEST)
-    jb = where(IB < INF, IB, LARGEST)
-    ja = where(M == 4.0, 0.0, ja)
-    jb = where(M == 4.0, 0.0, jb)
-    return fa, fb, ja, jb
+    ja = where(M == 4.0, 0.0, where(IA < INF, IA, LARGEST))
+    return fa, ja
 
 
-def energy_before(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
-    """Return the kinetic energy before the impact."""
-    KI = 0.5 * (fa * (UX * UX + UY * UY) + fb * (VX * VX + VY * VY) + (ja * wa * wa + jb * wb * wb))
+def energy(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
+    """Return the kinetic energy."""
+    turning = ja * wa * wa + jb * wb * wb
+    KI = 0.5 * (fa * dot(UX, UY, UX, UY) + fb * dot(VX, VY, VX, VY) + turning)
     return (KI,)
-
-
-def final_body_spins(M, WAF, WBF):
-    """Return the final spins, 0 for point masses."""
-    waf = where(M == 4.0, 0.0, WAF)
-    wbf = where(M == 4.0, 0.0, WBF)
-    return waf, wbf
-
-
-def energy_after(fa, fb, ja, jb, VAX, VAY, waf, VBX, VBY, wbf):
-    """Return the kinetic energy after the impact."""
-    KF = fa * (VAX * VAX + VAY * VAY) + fb * (VBX * VBX + VBY * VBY)
-    KF = 0.5 * (KF + (ja * waf * waf + jb * wbf * wbf))
-    return (KF,)
 
 
 def normal_loss(E, gn, PN):
@@ -501,9 +426,9 @@ def normal_loss(E, gn, PN):
     return (ELN,)
 
 
-def tangential_loss(gt, gt_after, PT):
+def tangential_loss(MU, gt, gt_after, PT):
     """Return the energy that the tangential impulse takes, at the mean sliding."""
-    ELT = -0.5 * (PT * (gt + gt_after))
+    ELT = -0.5 * (PT * (gt + where(MU == PIVOT, 0.0, gt_after)))
     return (ELT,)
 
 
@@ -525,58 +450,60 @@ def percent_lost(EL, KI):
     return (LOSS,)
 
 
-def equivalent_speeds(EL, MA, MB, ma, mb):
-    """Return the speeds of half the loss in each body, of all before a rigid barrier."""
-    twice = where(EL < 0.0, 0.0, EL + EL)
-    EESA = sqrt(where(MB == INF, twice, 0.5 * twice)) * sqrt(ma)
-    EESB = sqrt(where(MA == INF, twice, 0.5 * twice)) * sqrt(mb)
-    return EESA, EESB
+def equivalent_speed(EL, MB, ma):
+    """Return the speed of half the loss in a body, of all before a rigid barrier."""
+    lost = where(EL < 0.0, 0.0, EL)
+    EESA = sqrt(where(MB == INF, lost + lost, lost)) * sqrt(ma)
+    return (EESA,)
 
 
 # -- verdicts
 
 
-def condition_number(MU, mu, em, z, D, R, J, Ired, sn, st, an, at, bn, bt, ia, ib):
+def condition_number(MU, MUP, em, z, D, R, J, Ired, sn, st, an, at, bn, bt, ia, ib):
     """Return the determinant with absolute values in every sum, over itself."""
-    size = where(MU == PIVOT, 0.0, fabs(mu))
+    size = fabs(MUP)
     z_ = fabs(z)
     sn_ = fabs(an) + fabs(bn)
     st_ = fabs(at) + fabs(bt)
     kn_ = fabs(an) * ia + fabs(bn) * ib
     kt_ = fabs(at) * ia + fabs(bt) * ib
-    of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_))
-    of_s = of_s + fabs(em) * (Ired * kn_ * (kn_ + size * kt_))
-    of_p = z_ * R * (R + J * (sn * sn + st * st)) + fabs(em) * (
-        R * Ired * (kn_ * kn_ + kt_ * kt_)
-        + J * fabs(an * bt - at * bn) * (ia + ib) * (fabs(an * bt) + fabs(at * bn))
+    of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_)) + fabs(em) * (
+        Ired * kn_ * (kn_ + size * kt_)
+    )
+    of_p = z_ * R * (R + J * dot(sn, st, sn, st)) + fabs(em) * (
+        R * Ired * dot(kn_, kt_, kn_, kt_)
+        + J * fabs(cross(an, at, bn, bt)) * (ia + ib) * (fabs(an * bt) + fabs(at * bn))
     )
     COND = 3.0 * (where(MU == PIVOT, of_p, of_s) / fabs(D))
     return (COND,)
 
 
-def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, MA, MB, IA, IB, UX, UY, WA, VX, VY, WB):
+def body_usability(M, MA, IA, UX, UY, WA):
+    """Return 1 for a free body, 0 for one that is infinite and at rest, NaN for an impossible one.
+
+    Masses and inertias are above 0; a point mass has no inertia.
+    """
+    turns = (M == 4.0) | (IA < INF)
+    rests = ((MA < INF) | (UX == 0.0) & (UY == 0.0)) & (turns | (WA == 0.0))
+    good = (MA > 0.0) & ((M == 4.0) | (IA > 0.0)) & rests
+    free_a = where(good, where((MA < INF) & turns, 1.0, 0.0), nan)
+    return (free_a,)
+
+
+def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, UX, UY, WA, VX, VY, WB, free_a, free_b):
     """Return 1 where the numbers of a scene can be used, 0 elsewhere.
 
-    They are finite (a sum is finite where its terms are), masses and inertias are above 0, an
-    infinite body is at rest, and there is one at most.
+    They are finite (a sum is finite where its terms are), and one body at most is infinite.
     """
-    point = M == 4.0
-    good = (point | (M == 6.0)) & (fabs(E + MU + UX + UY + WA + VX + VY + WB) < INF)
-    good = good & (fabs(GA) < LARGEST_ANGLE) & (MA > 0.0) & (MB > 0.0)
     turns = fabs(PA) + fabs(PB) + fabs(TA) + fabs(TB)
-    body = (fabs(EM + DA + DB) < INF) & (turns < LARGEST_ANGLE) & (IA > 0.0) & (IB > 0.0)
-    free_a = MA < INF
-    free_b = MB < INF
-    turns_a = point | (IA < INF)
-    turns_b = point | (IB < INF)
-    good = good & (point | body) & ((free_a & turns_a) | (free_b & turns_b))
-    good = good & (free_a | (UX == 0.0) & (UY == 0.0)) & (turns_a | (WA == 0.0))
-    good = good & (free_b | (VX == 0.0) & (VY == 0.0)) & (turns_b | (WB == 0.0))
-    fit = where(good, 1.0, 0.0)
+    body = (fabs(EM + DA + DB) < INF) & (turns < LARGEST_ANGLE) & (M == 6.0) | (M == 4.0)
+    finite = (fabs(E + MU + UX + UY + WA + VX + VY + WB) < INF) & (fabs(GA) < LARGEST_ANGLE)
+    fit = where(body & finite & (free_a + free_b > 0.0), 1.0, 0.0)
     return (fit,)
 
 
-def friction_bits(MU, mu, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, Nn, Nt):
+def friction_bits(MU, MUP, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, Nn, Nt):
     """Return the bits of friction above critical and in the wrong direction.
 
     Friction is above critical, or in the wrong direction, unless it can act against the sliding
@@ -586,57 +513,72 @@ def friction_bits(MU, mu, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, Nn
     and of Pt add to the sliding, for gt/K between Pn/2 and 2 Pn; here without the root.
     """
     critical = fabs(Nt)
-    friction = where(MU == PIVOT, 0.0, mu)
+    friction = where(MU == PIVOT, 0.0, MUP)
     sign = where(D_p < 0.0, -1.0, 1.0)
     pushing = Nn * sign
     along = where(Nt * sign < 0.0, -friction, friction)
-    approach = (gn < 0.0) & (PN > 0.0)
-    backward = approach & (along < -FRICTION_TOLERANCE)
+    backward = along < -FRICTION_TOLERANCE
     no_sliding = (pushing > 0.0) & (critical <= FRICTION_TOLERANCE * pushing)
-    above = approach & (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
+    beyond = (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
     turned = (an * at * ia + bn * bt * ib) * PN + kt * PM
     back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
-    excess = fabs(gt) + fabs(gt) - fabs(turned)
+    size = fabs(turned)
+    excess = fabs(gt) + fabs(gt) - size
     gap = excess - back
-    one_way = (gt * turned >= 0.0) | (friction * gt >= 0.0) | (excess <= 0.0)
-    one_way = one_way | (excess >= 3.0 * fabs(turned)) | (gap < 0.0)
-    one_way = one_way | (gap * gap < 4.0 * (fabs(turned) * back))
-    above = (above | backward & no_sliding) & one_way
-    wrong = backward & ~no_sliding & (critical > 0.0) & one_way
-    of_friction = where(above, Status.FRICTION_ABOVE_CRITICAL, 0.0)
-    of_friction = of_friction + where(wrong, Status.FRICTION_WRONG_DIRECTION, 0.0)
+    one_way = (
+        (gt * turned >= 0.0)
+        | (friction * gt >= 0.0)
+        | (excess <= 0.0)
+        | (excess >= 3.0 * size)
+        | (gap < 0.0)
+        | (gap * gap < 4.0 * (size * back))
+    )
+    impossible = one_way & (gn < 0.0) & (PN > 0.0)
+    above = (beyond | backward & no_sliding) & impossible
+    wrong = backward & ~no_sliding & (critical > 0.0) & impossible
+    of_friction = where(above, Status.FRICTION_ABOVE_CRITICAL, 0.0) + where(
+        wrong, Status.FRICTION_WRONG_DIRECTION, 0.0
+    )
     return (of_friction,)
 
 
-def coefficient_bits(E, MU, mu, em):
-    """Return the bits of coefficients out of range."""
-    moment = (em < EM_MIN) | (em > EM_MAX) & ((em < NO_MOMENT) | (em > NO_MOMENT))
-    of_range = where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)
-    of_range = of_range + where(moment, Status.EM_OUT_OF_RANGE, 0.0)
-    of_range = of_range + where((MU != PIVOT) & (mu <= PIVOT), Status.MU_OUT_OF_RANGE, 0.0)
-    return (of_range,)
-
-
-def side_bits(da, at, db, bt):
-    """Return the bits of centers on the wrong side of the contact plane."""
-    of_sides = where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
-    of_sides = of_sides + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
-    return (of_sides,)
-
-
-def solution_bits(KI, EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):
-    """Return the bits of scenes without a solution, or nearly so."""
-    finite = fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF
-    finite = finite & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
-    of_solution = where(finite, 0.0, Status.NOT_FINITE)
-    of_solution = of_solution + where(COND < SINGULAR_FROM, 0.0, Status.SINGULAR)
-    return (of_solution,)
-
-
-def status(gn, PN, KI, EL, of_range, of_friction, of_sides, of_solution):
+def status(
+    E,
+    MU,
+    MUP,
+    em,
+    da,
+    at,
+    db,
+    bt,
+    gn,
+    PN,
+    KI,
+    EL,
+    COND,
+    VAX,
+    VAY,
+    VBX,
+    VBY,
+    WAF,
+    WBF,
+    of_friction,
+):
     """Return the bits of `impact88.status.Status`; a comparison with NaN is false."""
-    STATUS = of_range + of_friction + of_sides + of_solution
-    STATUS = STATUS + where(gn >= 0.0, Status.SEPARATING, 0.0)
-    STATUS = STATUS + where(PN < 0.0, Status.PULLING, 0.0)
-    STATUS = STATUS + where(-(EL + EL) > ENERGY_TOLERANCE * KI, Status.ENERGY_GAINED, 0.0)
+    moment = (em < EM_MIN) | (em > EM_MAX) & (em != NO_MOMENT)
+    moves = fabs(VAX + VAY + VBX + VBY + WAF + WBF) < INF
+    finite = moves & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF) & (COND <= INF)
+    STATUS = (
+        of_friction
+        + where((E < E_MIN) | (E > E_MAX), Status.E_OUT_OF_RANGE, 0.0)
+        + where(moment, Status.EM_OUT_OF_RANGE, 0.0)
+        + where((MU != PIVOT) & (MUP <= PIVOT), Status.MU_OUT_OF_RANGE, 0.0)
+        + where(at > SIDE_TOLERANCE * fabs(da), Status.A_ON_WRONG_SIDE, 0.0)
+        + where(bt > SIDE_TOLERANCE * fabs(db), Status.B_ON_WRONG_SIDE, 0.0)
+        + where(gn >= 0.0, Status.SEPARATING, 0.0)
+        + where(PN < 0.0, Status.PULLING, 0.0)
+        + where(-(EL + EL) > ENERGY_TOLERANCE * KI, Status.ENERGY_GAINED, 0.0)
+        + where(COND < SINGULAR_FROM, 0.0, Status.SINGULAR)
+        + where(finite, 0.0, Status.NOT_FINITE)
+    )
     return (STATUS,)

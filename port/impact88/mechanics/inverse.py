@@ -20,14 +20,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import UserError
 from ..names import FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from .consequences import typed_friction
 from .solve import BODIES, POINT, evaluate
 
 Floats = NDArray[np.float64]
 
 LAWS = (("E", "PN"), ("MUP", "PT"), ("EM", "PM"))
 """Coefficient and impulse of Equations 15, 16 and 18."""
-GEOMETRY = ("s", "c", "an", "at", "bn", "bt", "ma", "mb", "ia", "ib")
-COLUMNS = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA", "M")
+COLUMNS = "MA MB IA IB DA DB PA PB TA TB GA M".split()
+GEOMETRY = "s c an at bn bt ma mb ia ib"
 
 
 class Completed(NamedTuple):
@@ -37,7 +38,7 @@ class Completed(NamedTuple):
     ----------
     values : dict of str to ndarray
         What was given, and all of UX UY WA VX VY WB, VAX VAY WAF VBX VBY WBF, PN PT PM, E MUP EM,
-        MU (as typed: line 400 makes MUP of it) and mu, which is MUP. `evaluate` gives all else.
+        MU (as typed: line 400 makes MUP of it). `evaluate` gives all else.
     log_volume : ndarray
         Logarithm of the volume of velocities before and coefficients per unit of the velocities and
         of the laws' values that were given.
@@ -84,32 +85,30 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     if (known.setdefault("M", np.array(BODIES)) == POINT).all():
         known.update(EM=np.array(0.0), PM=np.array(0.0))
     geometry, lacking = evaluate({n: known[n] for n in COLUMNS if n in known}, GEOMETRY)
-    missing = dict.fromkeys(name for names in lacking.values() for name in names)
+    missing = [*dict.fromkeys(name for names in lacking.values() for name in names)]
     pairs = list(zip(VELOCITIES, FINAL_STATE, strict=True))
-    missing.update({f"{a} or {b}": None for a, b in (*pairs, *LAWS) if not {a, b} & known.keys()})
+    missing += [f"{a} or {b}" for a, b in (*pairs, *LAWS) if not {a, b} & known.keys()]
     if missing:
         raise UserError(f"missing {', '.join(missing)}")
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
-    s, c, an, at, bn, bt, ma, mb, ia, ib = (geometry[name] for name in GEOMETRY)
+    s, c, an, at, bn, bt, ma, mb, ia, ib = geometry.values()
     # relative velocities along n and t, and of the spins, by unit velocities
     relative = _stack([[c, s, an, -c, -s, bn], [-s, c, at, s, -c, bt], [0, 0, 1, 0, 0, -1]], shape)
     # changes of velocities by unit impulses
     changes = relative * _stack([[ma, ma, ia, mb, mb, ib]], shape)
     late = np.array([early not in known for early in VELOCITIES])
     full, delayed = _products(relative, changes), _products(relative[:, late], changes[:, late])
-    velocities_known = _stack(
-        [[known[b if is_late else a] for (a, b), is_late in zip(pairs, late, strict=True)]], shape
-    )
-    rows, right = _laws(known, _products(relative, velocities_known)[:, 0], full - delayed, delayed)
+    given = _stack([[known[a if a in known else b] for a, b in pairs]], shape)
+    rows, right = _laws(known, _products(relative, given)[:, 0], full - delayed, delayed)
     crosses = [_cross(rows[k - 2], rows[k - 1]) for k in range(3)]
     determinant = _dot(rows[0], crosses[0])
     impulse = [_dot(right, column) / determinant for column in zip(*crosses, strict=True)]
     values = {**known, **dict(zip(IMPULSES, impulse, strict=True))}
-    for (before, after), is_late, change in zip(pairs, late, _dot(impulse, changes), strict=True):
-        if is_late:
-            values[before] = known[after] - change
-        else:
+    for (before, after), change in zip(pairs, _dot(impulse, changes), strict=True):
+        if before in known:
             values[after] = known[before] + change
+        else:
+            values[before] = known[after] - change
     velocities = _stack([[values[x] for x in VELOCITIES], [values[x] for x in FINAL_STATE]], shape)
     g, separation = np.moveaxis(_products(relative, velocities), 1, 0)
     twist = separation[2] + impulse[2] * full[2, 2]
@@ -119,8 +118,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
         if name not in known:
             values[name] = dividend / divisor
             volume = volume - np.log(np.abs(divisor))
-    values["mu"] = mu = values["MUP"]
-    values["MU"] = np.where((g[1] > 0.0) & (mu != PIVOT), -mu, mu)
+    (values["MU"],) = typed_friction(values["MUP"], g[1])
     (a, b, c), _ = _laws(values, g, full, np.zeros((3, 1)))
     return Completed(values, volume + np.log(np.abs(_dot(a, _cross(b, c)))))
 

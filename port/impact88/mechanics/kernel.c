@@ -23,6 +23,7 @@ typedef double ROW[STRIP + 8] __attribute__((aligned(64)));
 #define INLINE static inline __attribute__((always_inline))
 #endif
 #define inf INFINITY
+#define nan NAN
 #define where(condition, yes, no) ((condition) ? (yes) : (no))
 #include "formulas.h"
 

@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from .. import library
 from ..errors import UserError
 from ..names import PIVOT
 from . import consequences, formulas
-from .plan import COMPILED, FORMULAS, OTHERS, PIVOTS, ROWS
+from .plan import COMPILED, FORMULAS, OTHERS, PIVOTS, ROWS, Step, plan
 from .translate import digest
 
 Array = NDArray[Any]
@@ -35,6 +35,10 @@ BITS = 2  # STATUS
 RAW = 3  # as computed
 KINDS = {"STATUS": BITS, "COND": ANY_SIZE}  # of checked results; the others are finite
 NUMBERS = {name: number for number, name in enumerate(COMPILED)}  # of loops in the library
+_functions = {
+    name: getattr(formulas if name in COMPILED else consequences, formula.tree.name)
+    for name, formula in FORMULAS.items()
+}
 _address_of, _buffer_of = ctypes.addressof, ctypes.c_char.from_buffer
 
 
@@ -51,157 +55,178 @@ _compiled = _load()
 
 
 class Kernel:
-    """The computation of quantities by formulas that the library has.
+    """The computation of quantities, by the library as far as it has their formulas.
 
     Parameters
     ----------
-    steps : sequence of (str, int)
-        Formulas in order, with their guards (`plan`).
-    wanted : sequence of str
-        Quantities that they give; ``fit`` is among those they give where ``is_checked``.
+    wanted : tuple of str
+        Names of quantities.
+    known : frozenset of str
+        Names of columns and quantities that are given.
     varying : frozenset of str
-        Names of the inputs that have a number for each scene.
+        Names of those that have a number for each scene.
     is_checked : bool
         Whether results are made NaN where a scene cannot be used, or are not finite.
+
+    Attributes
+    ----------
+    results : list of str
+        Quantities that `compute` returns: those wanted, and those that ``following`` takes.
+    fixed, changing : list of str
+        The inputs that `compute` takes, numbers and columns.
+    following : list of (Formula, int)
+        Formulas that numpy runs afterwards (`run_formulas`): those of `consequences`, those that
+        give what is known, and what they lead to.
+    missing : dict of str to tuple of str
+        Wanted quantities that do not follow from what is known -> the columns that they lack.
     """
 
     def __init__(
         self,
-        steps: Sequence[tuple[str, int]],
-        wanted: Sequence[str],
+        wanted: tuple[str, ...],
+        known: frozenset[str],
         varying: frozenset[str],
         is_checked: bool,
     ) -> None:
-        self.wanted = wanted
-        self._kinds = [KINDS.get(name, FINITE) if is_checked else RAW for name in wanted]
-        operands = dict.fromkeys(x for name, _ in steps for x in FORMULAS[name].takes)
-        inputs = operands.keys() - {x for name, _ in steps for x in FORMULAS[name].gives}
+        steps, _, self.missing = plan((*wanted, "fit") if is_checked else wanted, known)
+        compiled: list[Step] = []
+        self.following: list[Step] = []
+        for formula, guard in steps:
+            is_compiled = formula.name in COMPILED and known.isdisjoint(formula.gives)
+            is_compiled = is_compiled and _gives(self.following).isdisjoint(formula.takes)
+            (compiled if is_compiled else self.following).append((formula, guard))
+        given = _gives(compiled)
+        inputs = _takes(compiled) - given
+        needed = dict.fromkeys((*wanted, *_takes(self.following)))
+        self.results = [name for name in needed if name in given]
         self.fixed = [name for name in inputs if name not in varying]
         self.changing = [name for name in inputs if name in varying]
+        self._kinds = [KINDS.get(name, FINITE) if is_checked else RAW for name in self.results]
+        self._bits = [row for row, kind in enumerate(self._kinds) if kind == BITS]
         changing = set(varying)
-        once: list[tuple[str, int]] = []
-        each: list[tuple[str, int]] = []
-        for name, guard in steps:
-            if changing.isdisjoint(FORMULAS[name].takes):
-                once.append((name, 0))  # a later strip may have the pivots that the first lacks
+        once: list[Step] = []
+        each: list[Step] = []
+        for formula, guard in compiled:
+            if changing.isdisjoint(formula.takes):
+                once.append((formula, 0))  # a later strip may have the pivots that the first lacks
             else:
-                each.append((name, guard))
-                changing.update(FORMULAS[name].gives)
+                each.append((formula, guard))
+                changing.update(formula.gives)
         self._steps = once + each
-        pairs = [(ROWS[name], 0) for name in self.fixed]
-        pairs += [(ROWS[name], 1) for name in self.changing]
-        pairs += [(NUMBERS[name], guard) for name, guard in self._steps]
-        pairs += [(ROWS[name], kind) for name, kind in zip(wanted, self._kinds, strict=True)]
-        sizes = [len(inputs), len(once), len(steps), len(wanted), ROWS["fit"]]
-        self._plan = np.array([*sizes, *(x for pair in pairs for x in pair)], np.int64)
+        pairs = [
+            *((ROWS[name], 0) for name in self.fixed),
+            *((ROWS[name], 1) for name in self.changing),
+            *((NUMBERS[formula.name], guard) for formula, guard in self._steps),
+            *((ROWS[name], kind) for name, kind in zip(self.results, self._kinds, strict=True)),
+        ]
+        sizes = (len(inputs), len(once), len(compiled), len(self.results), ROWS["fit"])
+        self._plan = np.array([*sizes, *chain(*pairs)], np.int64)
         (self._plan_address,) = addresses([self._plan])
 
     def compute(
         self,
-        inputs: Mapping[str, Any],
+        numbers: Array,
+        columns: Sequence[Array],
         shape: tuple[int, ...],
-        out: Mapping[str, Array] | None = None,
+        out: Mapping[str, Any] | None = None,
         threads: int | None = 1,
-    ) -> dict[str, Array]:
+    ) -> dict[str, Any]:
         """Return results of inputs.
 
         Parameters
         ----------
-        inputs : mapping of str to float or ndarray
-            Numbers, and contiguous float64 arrays of one length for inputs that vary.
+        numbers : ndarray
+            A float64 for each name in ``fixed``.
+        columns : sequence of ndarray
+            A contiguous float64 array of one length for each name in ``changing``.
         shape : tuple of int
-            The shape of the results, of that size.
+            The shape of the results, of that size: numbers for ().
         out : mapping of str to ndarray, optional
-            Arrays to write the results into, instead of new ones.
+            Contiguous arrays to write the results into, instead of new ones.
         threads : int or None, default 1
             The number of threads, None for as many as there are processors and work.
-        """
-        numbers = np.array([inputs[name] for name in self.fixed], np.float64)
-        columns = [inputs[name] for name in self.changing]
-        return self.compute_columns(numbers, columns, shape, out, threads)
 
-    def compute_columns(
-        self,
-        numbers: Array,
-        columns: Sequence[Array],
-        shape: tuple[int, ...],
-        out: Mapping[str, Array] | None = None,
-        threads: int | None = 1,
-    ) -> dict[str, Array]:
-        """Return results of the numbers of `fixed` and the columns of `changing`, as `compute`."""
+        Raises
+        ------
+        UserError
+            For arrays in ``out`` that cannot take the results.
+        """
+        count = math.prod(shape)
         places = addresses(columns)
         if out is None:
-            results, starts = self._new_arrays(shape)
+            block = np.empty((len(self.results), count))
+            arrays = [*block]
+            starts = _row_addresses(block)
+            for row in self._bits:
+                arrays[row] = arrays[row].view(np.uint16)[:count]
         else:
-            results, starts = self._check_output(out, shape, places)
-        count = math.prod(shape)
+            arrays = [_output_array(out, name, shape) for name in self.results]
+            starts = addresses(arrays)
+            _check_overlap((places, columns), (starts, arrays))
         if _compiled is None or library.is_switched_off():
-            self._run_by_numpy(numbers, columns, [x.reshape(-1) for x in results.values()])
+            self._run_by_numpy(numbers, columns, [array.reshape(-1) for array in arrays])
         else:
-            (first,) = addresses([numbers])
-            places = [*range(first, first + numbers.nbytes, 8), *places, *starts]
-            table = np.array(places, np.int64)
+            table = np.array([*_row_addresses(numbers), *places, *starts], np.int64)
             work = partial(_compiled.solve, self._plan_address, *addresses([table]))
             run_in_threads(work, count, threads)
-        return results
+        if out is None and len(shape) != 1:
+            arrays = [array.reshape(shape) if shape else array[0] for array in arrays]
+        return dict(zip(self.results, arrays, strict=True))
 
     def _run_by_numpy(
-        self, numbers: Array, columns: Sequence[Array], results: Sequence[Array]
+        self, numbers: Array, columns: Sequence[Array], rows: Sequence[Array]
     ) -> None:
         """Compute results, strip by strip."""
-        for start in range(0, len(results[0]), STRIP):
+        for start in range(0, len(rows[0]), STRIP):
             part = slice(start, start + STRIP)
             values = dict(zip(self.fixed, numbers, strict=True))
             values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
             run_formulas(self._steps, values)
-            for to, name, kind in zip(results, self.wanted, self._kinds, strict=True):
-                to[part] = output(values, name, kind)
+            for row, name, kind in zip(rows, self.results, self._kinds, strict=True):
+                row[part] = output(values, name, kind)
 
-    def _new_arrays(self, shape: tuple[int, ...]) -> tuple[dict[str, Array], list[int]]:
-        """Return arrays for results, rows of one block, and their addresses."""
-        block = np.empty((len(self.wanted), *shape))
-        (first,) = addresses([block])
-        arrays: dict[str, Array] = {name: block[k, ...] for k, name in enumerate(self.wanted)}
-        size = 8 * math.prod(shape)
-        starts = [first + k * size for k in range(len(block))]
-        if BITS in self._kinds:
-            bits = arrays["STATUS"] = np.empty(shape, np.uint16)
-            (starts[self._kinds.index(BITS)],) = addresses([bits])
-        return arrays, starts
 
-    def _check_output(
-        self, out: Mapping[str, Array], shape: tuple[int, ...], inputs: Sequence[int]
-    ) -> tuple[dict[str, Array], list[int]]:
-        """Return the arrays to write results into, and their addresses. Raises UserError for arrays
-        that cannot take them; ``inputs``: the addresses of the columns."""
-        results = {}
-        for name, kind in zip(self.wanted, self._kinds, strict=True):
-            array: Any = out.get(name)
-            dtype: type = np.uint16 if kind == BITS else np.float64
-            is_array = isinstance(array, np.ndarray) and array.flags.carray
-            if not is_array or array.shape != shape or array.dtype != dtype:
-                form = f"a contiguous array of {dtype.__name__} of shape {shape}"
-                raise UserError(f"out, {name}: expected {form}")
-            results[name] = array
-        starts = addresses(list(results.values()))
-        spans = [(at, at + x.nbytes, 1) for at, x in zip(starts, results.values(), strict=True)]
-        spans += [(at, at + 8 * math.prod(shape), 0) for at in inputs]
-        for (_, end, is_result), (start, _, is_other) in pairwise(sorted(spans)):
-            if start < end and is_result | is_other:  # columns may overlap each other
-                raise UserError("out: a result shares memory with a column or another result")
-        return results, starts
+def _takes(steps: Sequence[Step]) -> set[str]:
+    """Return the quantities that formulas take."""
+    return {x for formula, _ in steps for x in formula.takes}
+
+
+def _gives(steps: Sequence[Step]) -> set[str]:
+    """Return the quantities that formulas give."""
+    return {x for formula, _ in steps for x in formula.gives}
+
+
+def _output_array(out: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Any:
+    """Return the array for a result. Raises UserError where it cannot take results of a shape."""
+    array: Any = out.get(name)
+    dtype: type = np.uint16 if name == "STATUS" else np.float64
+    is_array = isinstance(array, np.ndarray) and array.flags.carray
+    if not is_array or array.shape != shape or array.dtype != dtype:
+        form = f"a contiguous array of {dtype.__name__} of shape {shape}"
+        raise UserError(f"out, {name}: expected {form}")
+    return array
+
+
+def _check_overlap(*groups: tuple[Sequence[int], Sequence[Array]]) -> None:
+    """Raise UserError where results share memory. ``groups``: columns and results, their addresses
+    and arrays."""
+    spans = []
+    for is_result, (starts, arrays) in enumerate(groups):
+        spans += [(at, at + x.nbytes, is_result) for at, x in zip(starts, arrays, strict=True)]
+    for (_, end, is_result), (start, _, is_other) in pairwise(sorted(spans)):
+        if start < end and is_result | is_other:  # columns may overlap each other
+            raise UserError("out: a result shares memory with a column or another result")
 
 
 @np.errstate(all="ignore")
-def run_formulas(steps: Sequence[tuple[str, int]], values: dict[str, Any]) -> None:
+def run_formulas(steps: Sequence[Step], values: dict[str, Any]) -> None:
     """Add what formulas give to values, by numpy; a quantity that is there stays."""
     is_pivot = np.equal(values.get("MU", 0.0), PIVOT)
-    for name, guard in steps:
-        formula = FORMULAS[name]
+    for formula, guard in steps:
         if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
             quantities = [np.float64(1.0)] * len(formula.gives)  # not used
         else:
-            function = getattr(formulas if name in COMPILED else consequences, name)
+            function = _functions[formula.name]
             quantities = function(*[values[operand] for operand in formula.takes])
         for quantity, array in zip(formula.gives, quantities, strict=True):
             values.setdefault(quantity, array)
@@ -215,6 +240,12 @@ def output(values: Mapping[str, Any], name: str, kind: int) -> Any:
     largest = np.inf if kind == ANY_SIZE else formulas.LARGEST
     is_usable = (values["fit"] == 1.0) & (np.abs(x) <= largest)
     return np.where(is_usable, x + 0.0, NOT_FINITE if kind == BITS else np.nan)
+
+
+def _row_addresses(block: Array) -> Sequence[int]:
+    """Return the addresses of an array's rows."""
+    (first,) = addresses([block])
+    return range(first, first + block.nbytes, block.strides[0] or 8)
 
 
 def addresses(arrays: Sequence[Any]) -> list[int]:

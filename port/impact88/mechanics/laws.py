@@ -69,17 +69,18 @@ def margins(
     """
     speed, mass, length = scale
     impulse, spin = mass * speed, speed / length
-    v, _ = evaluate(known, ("gn", "PN", "PT", "EL", "VS", "waf", "wbf", "PM", "ia", "ib", "MUC"))
-    pn, pt = v["PN"] / impulse, v["PT"] / impulse
-    closing, separation = -v["gn"] / speed, v["VS"] / speed
-    turning = (v["waf"] - v["wbf"]) / spin
-    low, high = friction_range(v["MUC"])
+    values, _ = evaluate(known, "gn PN PT EL VS waf wbf PM ia ib MUC")
+    gn, pn, pt, lost, vs, waf, wbf, moment, ia, ib, critical = values.values()
+    pn, pt = pn / impulse, pt / impulse
+    closing, separation = -gn / speed, vs / speed
+    turning = (waf - wbf) / spin
+    low, high = friction_range(critical)
     return {
         "approach": (closing,),
         "push": (pn,),
-        "energy": (v["EL"] / (impulse * speed),),
+        "energy": (lost / (impulse * speed),),
         "E": _between(E_MIN, separation, E_MAX, closing),
-        "EM": _between(EM_MIN, turning, EM_MAX, turning + v["PM"] * (v["ia"] + v["ib"]) / spin),
+        "EM": _between(EM_MIN, turning, EM_MAX, turning + moment * (ia + ib) / spin),
         "friction": (pt - low * pn, high * pn - pt),
     }
 

@@ -5,6 +5,7 @@ imports numpy: the build step that prints the formulas as C reads them through t
 """
 
 import ast
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,33 +15,50 @@ from ..names import SCENE
 COLUMNS = tuple(SCENE)
 """Names of a scene's columns, in the order of the compiled library."""
 
-HELPERS = ("sine_and_cosine",)
+HELPERS = ("sine_and_cosine", "dot", "cross")
 """Functions of `formulas` that formulas call, and that are no formulas."""
+
+BODIES = (
+    "MA IA DA PA TA UX UY WA VAX VAY WAF XA YA XAF YAF DVA EESA CAX CAY D3 D4 SA SAF HA HAF DVAF "
+    "DVAR PDOFA ma ia fa ja wa an at ax ay da angle_a part_a own_a given_a wa_s wa_p state_a "
+    "free_a front_a",
+    "MB IB DB PB TB VX VY WB VBX VBY WBF XB YB XBF YBF DVB EESB CBX CBY D1 D2 SB SBF HB HBF DVBF "
+    "DVBR PDOFB mb ib fb jb wb bn bt bx by db angle_b part_b own_b given_b wb_s wb_p state_b "
+    "free_b front_b",
+)
+"""Quantities of A, and the same ones of B: what gives some of A's alone gives B's, too."""
+TIMES = (
+    "UX UY WA VX VY WB wa wb SA SB XA YA XB YB KI cn ct gn gt",
+    "VAX VAY WAF VBX VBY WBF waf wbf SAF SBF XAF YAF XBF YBF KF cn_after ct_after gn_after "
+    "gt_after",
+)
+"""Quantities before the impact, and the same ones after it, given likewise."""
 
 PIVOTS = 1  # guard of a formula that only pivots need
 OTHERS = 2  # of one that only the other scenes need
 GUARDS = {
     "pivot_impulse": PIVOTS,
-    "pivot_spins": PIVOTS,
+    "pivot_state": PIVOTS,
+    "pivot_spin": PIVOTS,
     "sliding_impulse": OTHERS,
     "sliding_spins": OTHERS,
 }
 """Formulas that only pivots need, or only the other scenes."""
-SELECTING = ("impulse", "final_spins")
+SELECTING = ("impulse", "final_spin")
 """Formulas that look at the guarded ones' results only where these apply."""
 
 
 class Formula(NamedTuple):
-    """A function of `formulas` or `consequences`.
+    """A function of `formulas` or `consequences`, for some quantities.
 
     Parameters
     ----------
     name : str
-        The function's name.
+        The function's name, with a suffix where it is repeated for other quantities.
     takes, gives : tuple of str
         Names of the quantities that it takes and returns.
     tree : ast.FunctionDef
-        Its text.
+        The function's text.
     """
 
     name: str
@@ -49,20 +67,24 @@ class Formula(NamedTuple):
     tree: ast.FunctionDef
 
 
+Step = tuple[Formula, int]
+"""A formula and its guard: 0 for none."""
+
+
 class Plan(NamedTuple):
     """The computation of some quantities.
 
     Parameters
     ----------
-    steps : tuple of (str, int)
-        Formulas in an order in which each finds what it takes, with their guards (0: none).
+    steps : tuple of (Formula, int)
+        Formulas in an order in which each finds what it takes, with their guards.
     inputs : tuple of str
         Columns and known quantities that the steps take.
     missing : dict of str to tuple of str
         Wanted quantities that do not follow from what is known -> the columns that they lack.
     """
 
-    steps: tuple[tuple[str, int], ...]
+    steps: tuple[Step, ...]
     inputs: tuple[str, ...]
     missing: dict[str, tuple[str, ...]]
 
@@ -78,18 +100,42 @@ def _read_formulas(module: ast.Module) -> dict[str, Formula]:
     for tree in module.body:
         if isinstance(tree, ast.FunctionDef) and not tree.name.startswith("_"):
             takes = tuple(argument.arg for argument in tree.args.args)
-            last: Any = tree.body[-1]  # a return of a tuple of names
-            gives = tuple(name.id for name in last.value.elts)
+            last: Any = tree.body[-1]  # a return of a tuple of names; of an expression by helpers
+            gives = tuple(name.id for name in getattr(last.value, "elts", ()))
             formulas[tree.name] = Formula(tree.name, takes, gives, tree)
     return formulas
+
+
+def _repeat(
+    formulas: Mapping[str, Formula], suffix: str, names: str, others: str
+) -> dict[str, Formula]:
+    """Return formulas by name, each that gives some of ``names`` alone followed by the same for the
+    ``others``, unless these have a formula of their own."""
+    first, second = names.split(), others.split()
+    exchange = dict(zip(first + second, second + first, strict=True))
+    own = {formula.gives for formula in formulas.values()}
+    repeated = {}
+    for name, formula in formulas.items():
+        repeated[name] = formula
+        takes, gives = (
+            tuple(exchange.get(x, x) for x in side) for side in (formula.takes, formula.gives)
+        )
+        if {*first}.issuperset(formula.gives) and gives not in own:
+            repeated[name + suffix] = Formula(name + suffix, takes, gives, formula.tree)
+    return repeated
+
+
+def _for_all(formulas: Mapping[str, Formula]) -> dict[str, Formula]:
+    """Return formulas by name, those of both bodies and both times repeated."""
+    return _repeat(_repeat(formulas, "_b", *BODIES), "_after", *TIMES)
 
 
 SOURCE = _parse("formulas.py")
 """The text of `formulas`."""
 FUNCTIONS = _read_formulas(SOURCE)
-COMPILED = {name: formula for name, formula in FUNCTIONS.items() if name not in HELPERS}
+COMPILED = _for_all({name: f for name, f in FUNCTIONS.items() if name not in HELPERS})
 """Formulas that the compiled library has, too."""
-FORMULAS = COMPILED | _read_formulas(_parse("consequences.py"))
+FORMULAS = COMPILED | _for_all(_read_formulas(_parse("consequences.py")))
 ROWS = {
     name: row
     for row, name in enumerate((*COLUMNS, *(x for f in COMPILED.values() for x in f.gives)))
@@ -132,27 +178,26 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     quantities = {x for x in wanted if x in sources}
     everywhere = set(wanted)  # quantities that all scenes need
     inputs: set[str] = set()
-    steps: list[tuple[str, int]] = []
-    for name in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
-        _, takes, gives, _ = FORMULAS[name]
-        used = {x for x in quantities.intersection(gives) if sources.get(x) == name}
+    steps: list[Step] = []
+    for formula in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
+        used = {x for x in quantities.intersection(formula.gives) if sources.get(x) is formula}
         if used:
             is_guarded = everywhere.isdisjoint(used) and "MU" in known
-            guard = GUARDS.get(name, 0) if is_guarded else 0
-            if not guard and name not in SELECTING:
-                everywhere.update(takes)
-            steps.append((name, guard))
-            inputs |= known.intersection(takes)
-            quantities.update(takes)
+            guard = GUARDS.get(formula.tree.name, 0) if is_guarded else 0
+            if not guard and formula.tree.name not in SELECTING:
+                everywhere.update(formula.takes)
+            steps.append((formula, guard))
+            inputs |= known.intersection(formula.takes)
+            quantities.update(formula.takes)
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 
-def _sources(known: frozenset[str]) -> dict[str, str]:
+def _sources(known: frozenset[str]) -> dict[str, Formula]:
     """Return the formula to take for each quantity that follows from what is known.
 
     A formula is taken once all that it takes is there, so that no quantity leads to itself; one of
     `consequences` is taken when no further one of `formulas` can be."""
-    sources: dict[str, str] = {}
+    sources: dict[str, Formula] = {}
     pending = list(FORMULAS.values())
     while True:
         available = known.union(sources)
@@ -162,7 +207,7 @@ def _sources(known: frozenset[str]) -> dict[str, str]:
         pending.remove(ready)
         for quantity in ready.gives:
             if quantity not in known:
-                sources.setdefault(quantity, ready.name)
+                sources.setdefault(quantity, ready)
 
 
 def _lacking(quantity: str, known: frozenset[str]) -> tuple[str, ...]:

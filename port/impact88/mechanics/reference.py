@@ -2,29 +2,24 @@
 
 It shares nothing with `formulas`. The impulse (Pn, Pt, M) solves Equations 15, 16 (or no slip at
 separation) and 18 by Cramer's rule with so many digits that nothing is lost; everything else
-follows from the impulse, and what cancels to less than 50 digits is 0. To add a result, add its
-line where `results` says so.
+follows from the impulse, and what cancels to less than 50 digits is 0. Without mpmath the import of
+this module is a UserError. To add a result, add its line where `_results` says so.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .. import errors
 from ..decimals import exact
-from ..errors import UserError
-from ..names import FINAL_STATE, PIVOT, VELOCITIES
+from ..errors import UserError, library
+from ..names import FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 
 DIGITS = 50  # correct digits: three times a double's
 WRITTEN = 30  # digits of a text; the chapter's worked cases have as many
 GUARD = 15  # further working digits, to which those for the spread of a scene's numbers are added
 UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM", "WA", "WB")  # by point masses
 
+mpmath: Any = library("mpmath", "oracle", "the reference in 50 digits")
 Number = Any  # mpmath.mpf, which has no usable type
-
-
-def _mpmath() -> Any:
-    """Return mpmath. Raises UserError where it is not installed."""
-    return errors.library("mpmath", "oracle", "the reference in 50 digits")
 
 
 def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
@@ -43,14 +38,13 @@ def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
     Raises
     ------
     UserError
-        For a text that is no number, and where mpmath is not installed.
+        For a text that is no number.
 
     Examples
     --------
     >>> thirty_digits(impact88.sample(1))["VAX"]
     '-13.262655683532704239235175342'
     """
-    mpmath = _mpmath()
     try:
         values = results(scene)
     except ZeroDivisionError:  # a mass of 0
@@ -77,7 +71,6 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
     dict of str to mpf
         Results that have a value: none where the equations are singular.
     """
-    mpmath = _mpmath()
     with mpmath.workdps(GUARD):
         sizes = [abs(_number(x)) for name, x in scene.items() if name not in ("MU", "M")]
         powers = [int(mpmath.log10(x)) for x in sizes if x and mpmath.isfinite(x)]
@@ -88,7 +81,6 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
 
 def _number(value: str | float) -> Number:
     """Return a number at the working precision. Raises UserError for a text that is none."""
-    mpmath = _mpmath()
     if not isinstance(value, str):
         return mpmath.mpf(value)
     try:
@@ -100,15 +92,14 @@ def _number(value: str | float) -> Number:
 
 def _total(*terms: Number) -> Number:
     """Return a sum; 0 where it is nothing but rounding."""
-    mpmath = _mpmath()
     total = mpmath.fsum(terms)
     noise = max(map(abs, terms)) * mpmath.mpf(10) ** -DIGITS
     return total if abs(total) > noise else mpmath.mpf(0)
 
 
-def _dot(row: Iterable[Number], column: Iterable[Number]) -> Number:
-    """Return a sum of products, as `_total`."""
-    return _total(*(a * b for a, b in zip(row, column, strict=True)))
+def _products(rows: Iterable[Iterable[Number]], column: Sequence[Number]) -> list[Number]:
+    """Return the product of each row with a column, sums as `_total`."""
+    return [_total(*(a * b for a, b in zip(row, column, strict=True))) for row in rows]
 
 
 def _cross(first: Sequence[Number], second: Sequence[Number]) -> list[Number]:
@@ -122,60 +113,59 @@ def _solve_three(rows: Sequence[Sequence[Number]], right: Sequence[Number]) -> l
     """Return the solution of three equations by Cramer's rule, None where they are singular."""
     columns = list(zip(*rows, strict=True))
     crosses = [_cross(columns[k - 2], columns[k - 1]) for k in range(3)]
-    divisor = _dot(columns[0], crosses[0])
-    return [_dot(right, cross) / divisor for cross in crosses] if divisor else None
+    (divisor,) = _products(crosses[:1], columns[0])
+    return [x / divisor for x in _products(crosses, right)] if divisor else None
 
 
 def _results(scene: dict[str, Number]) -> dict[str, Number]:
     """Return the results of a scene's numbers."""
-    mpmath = _mpmath()
     g = scene
     is_point, is_pivot = g.get("M", 6) == 4, g["MU"] == PIVOT
     if is_point:
         g = {**g, **dict.fromkeys(UNUSED, mpmath.mpf(0)), "IA": mpmath.mpf(1), "IB": mpmath.mpf(1)}
-    s, c = _direction(g["GA"])
-    sine_a, cosine_a = _direction(g["TA"] + g["PA"])
-    sine_b, cosine_b = _direction(g["TB"] + g["PB"])
+    c, s = _vector(1, g["GA"])
     # from the centers to the contact point
-    arm_a = -g["DA"] * cosine_a, -g["DA"] * sine_a
-    arm_b = g["DB"] * cosine_b, g["DB"] * sine_b
-    # relative velocities of the contact points along n and t, and of the spins, A's minus B's
-    relative = [
-        [x, y, _moment(arm_a, x, y), -x, -y, -_moment(arm_b, x, y)] for x, y in ((c, s), (-s, c))
+    xa, ya = _vector(-g["DA"], g["TA"] + g["PA"])
+    xb, yb = _vector(g["DB"], g["TB"] + g["PB"])
+    # by the six velocities: those of the contact points along x and y; A's minus B's along n and t
+    # and of the spins
+    contact = [
+        [1, 0, -ya, 0, 0, 0],
+        [0, 1, xa, 0, 0, 0],
+        [0, 0, 0, 1, 0, -yb],
+        [0, 0, 0, 0, 1, xb],
     ]
+    relative = [_products(zip(*contact, strict=True), x) for x in ((c, s, -c, -s), (-s, c, s, -c))]
     relative.append([0, 0, 1, 0, 0, -1])
     masses = [g[name] for name in ("MA", "MA", "IA", "MB", "MB", "IB")]
     changes = [[x / m for x, m in zip(row, masses, strict=True)] for row in relative]
     before = [g[name] for name in VELOCITIES]
-    gn, gt, gw = (_dot(row, before) for row in relative)
+    gn, gt, gw = _products(relative, before)
     mu = g["MU"] if is_pivot or gt <= 0 else -g["MU"]
 
     # Equations 15, 16 (or no slip at separation) and 18 for Pn, Pt and the moment
-    K = [[_dot(row, column) for column in changes] for row in relative]
+    normal, tangential, turning = (_products(changes, row) for row in relative)
     e, em = g["E"], g["EM"]
-    moment = [(1 - em) * K[2][0], (1 - em) * K[2][1], (1 - 2 * em) * K[2][2]]
+    moment = [(1 - em) * x for x in turning[:2]] + [(1 - 2 * em) * turning[2]]
     right = [-(1 + e) * gn, -gt, (em - 1) * gw]
-    no_slip = _solve_three([K[0], K[1], moment], right)
-    sliding = _solve_three([K[0], [-mu, 1, 0], moment], [right[0], 0, right[2]])
+    no_slip = _solve_three([normal, tangential, moment], right)
+    sliding = _solve_three([normal, [-mu, 1, 0], moment], [right[0], 0, right[2]])
     P = no_slip if is_pivot else sliding
     if P is None:
         return {}
-    after = [
-        _total(v, *(x * p for x, p in zip(column, P, strict=True)))
-        for v, column in zip(before, zip(*changes, strict=True), strict=True)
-    ]
+    after = _products(zip(before, *changes, strict=True), (1, *P))
     sums = [_total(u, v) for u, v in zip(before, after, strict=True)]
-    works = [-p * _dot(row, sums) / 2 for p, row in zip(P, relative, strict=True)]
-    lost, size = _total(*works), mpmath.hypot(P[0], P[1])
+    works = [-p * v / 2 for p, v in zip(P, _products(relative, sums), strict=True)]
+    lost, size = _total(*works), mpmath.hypot(*P[:2])
     ma, mb = 1 / g["MA"], 1 / g["MB"]
     part = max(lost, 0) * (1 if ma and mb else 2)
-    f: dict[str, Number] = dict(zip(FINAL_STATE, after, strict=True))
-    f |= dict(zip(("ELN", "ELT", "ELM"), works, strict=True))
-    f |= dict(zip(("PN", "PT", "PM"), P, strict=True))
-    for suffix, energy, v in (("", "KI", before), ("F", "KF", after)):
-        for body, (x, y), (vx, vy, w) in (("A", arm_a, v[:3]), ("B", arm_b, v[3:])):
-            f[f"X{body}{suffix}"] = _total(vx, -y * w)
-            f[f"Y{body}{suffix}"] = _total(vy, x * w)
+    names = (*FINAL_STATE, *IMPULSES, "ELN", "ELT", "ELM")
+    f: dict[str, Number] = dict(zip(names, (*after, *P, *works), strict=True))
+    for contacts, energy, v in (
+        (("XA", "YA", "XB", "YB"), "KI", before),
+        (("XAF", "YAF", "XBF", "YBF"), "KF", after),
+    ):
+        f |= zip(contacts, _products(contact, v), strict=True)
         f[energy] = mpmath.fsum(m * x * x for m, x in zip(masses, v, strict=True) if x) / 2
     if is_point:
         f |= {"WAF": scene["WA"], "WBF": scene["WB"]}
@@ -194,11 +184,6 @@ def _results(scene: dict[str, Number]) -> dict[str, Number]:
     return f
 
 
-def _moment(arm: Sequence[Number], x: Number, y: Number) -> Number:
-    """Return the moment of (x, y) at an arm: what a unit of spin moves its end along (x, y)."""
-    return _total(arm[0] * y, -arm[1] * x)
-
-
-def _direction(degrees: Number) -> tuple[Number, Number]:
-    """Return sine and cosine of an angle."""
-    return _mpmath().sinpi(degrees / 180), _mpmath().cospi(degrees / 180)
+def _vector(length: Number, degrees: Number) -> tuple[Number, Number]:
+    """Return the vector of a length and a direction."""
+    return length * mpmath.cospi(degrees / 180), length * mpmath.sinpi(degrees / 180)

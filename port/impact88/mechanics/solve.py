@@ -12,12 +12,12 @@ from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
 from .kernel import Kernel, run_formulas
-from .plan import COMPILED, FORMULAS, QUANTITIES, plan
+from .plan import QUANTITIES, plan
 
 Array = NDArray[Any]
 Names = tuple[str, ...]
-Step = tuple[str, int]
 
+_COLUMNS = frozenset(SCENE)
 BODIES = 6.0  # M of bodies
 POINT = 4.0  # M of point masses
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
@@ -96,8 +96,8 @@ def solve(
         results = tuple(RESULTS if out is None else out)
     wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
     shape, inputs, varying = _flatten(_read_columns(columns, needed))
-    arrays = _kernel(wanted, varying).compute(inputs, shape, out, threads)
-    return arrays if shape or out else _numbers(arrays)
+    kernel = _kernel(wanted, _COLUMNS, varying, True)
+    return kernel.compute(*_select(inputs, kernel), shape, out, threads)
 
 
 def evaluate(
@@ -150,18 +150,21 @@ def evaluate(
     values = {x: _as_doubles(x, value) for x, value in known.items() if x in QUANTITIES}
     _complete_points(values)
     shape, inputs, varying = _flatten(values)
-    kernel, following, lacking = _evaluation(names, frozenset(values), varying)
+    kernel = _kernel(names, frozenset(values), varying, False)
+    check_names(kernel.missing, QUANTITIES, "quantity of an impact")
     values = {
         x: np.float64(value) if type(value) is float else value for x, value in values.items()
     }
-    if kernel.wanted:
-        values |= kernel.compute(inputs, shape)
-    run_formulas(following, values)
-    results = {name: values[name] for name in names if name not in lacking}
-    for name, array in results.items():
-        if array.shape != shape:
-            results[name] = np.broadcast_to(array, shape)
-    return results, lacking
+    if kernel.results:
+        values |= kernel.compute(*_select(inputs, kernel), shape)
+    if kernel.following:
+        run_formulas(kernel.following, values)
+    results = {name: values[name] for name in names if name not in kernel.missing}
+    results = {
+        name: array if array.shape == shape else np.broadcast_to(array, shape)
+        for name, array in results.items()
+    }
+    return results, kernel.missing
 
 
 def prepared(
@@ -242,8 +245,8 @@ class Prepared:
         shape, self._scene, varying = _flatten(_read_columns(scene, stays))
         if varying:
             raise UserError(f"{' '.join(varying)}: {shape} numbers; expected one that stays")
-        self._kernel = _kernel(self.results, frozenset(names))
-        self._numbers = np.array([self._scene[name] for name in self._kernel.fixed])
+        self._kernel = _kernel(self.results, _COLUMNS, frozenset(names), True)
+        self._numbers = np.array([self._scene[name] for name in self._kernel.fixed], np.float64)
         self._rows = [names.index(name) for name in self._kernel.changing]
 
     def __call__(self, values: ArrayLike, *surplus: object) -> dict[str, Any]:
@@ -277,43 +280,20 @@ class Prepared:
         shape = block.shape[1:]
         rows = [*block.reshape(len(block), -1)]
         columns = [rows[k] for k in self._rows]
-        arrays = self._kernel.compute_columns(self._numbers, columns, shape)
-        return arrays if shape else _numbers(arrays)
+        return self._kernel.compute(self._numbers, columns, shape)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes an equal function of: no addresses."""
         return Prepared, (self.names, self.results, self._scene)
 
 
-@lru_cache(maxsize=512)
-def _kernel(wanted: Names, varying: frozenset[str]) -> Kernel:
-    """Return the computation of checked results."""
-    return Kernel(plan((*wanted, "fit")).steps, wanted, varying, True)
+_kernel = lru_cache(maxsize=1024)(Kernel)
 
 
-@lru_cache(maxsize=512)
-def _evaluation(
-    wanted: Names, known: frozenset[str], varying: frozenset[str]
-) -> tuple[Kernel, list[Step], dict[str, Names]]:
-    """Return the computation of quantities by the library; the formulas that numpy runs after it,
-    those of `consequences`, those that give what is known, and what they lead to; and what the
-    quantities lack that do not follow."""
-    check_names(wanted, QUANTITIES, "quantity of an impact")
-    steps, _, lacking = plan(wanted, known)
-    compiled: list[Step] = []
-    following: list[Step] = []
-    by_numpy: set[str] = set()
-    for step in steps:
-        _, takes, gives, _ = formula = FORMULAS[step[0]]
-        is_compiled = formula.name in COMPILED and known.isdisjoint(gives)
-        if is_compiled and by_numpy.isdisjoint(takes):
-            compiled.append(step)
-        else:
-            following.append(step)
-            by_numpy.update(gives)
-    needed = {*wanted, *(x for name, _ in following for x in FORMULAS[name].takes)}
-    results = [x for name, _ in compiled for x in FORMULAS[name].gives if x in needed]
-    return Kernel(compiled, results, varying, False), following, lacking
+def _select(inputs: Mapping[str, Any], kernel: Kernel) -> tuple[Array, list[Array]]:
+    """Return the numbers and the columns that a kernel takes."""
+    numbers = np.array([inputs[name] for name in kernel.fixed], np.float64)
+    return numbers, [inputs[name] for name in kernel.changing]
 
 
 @lru_cache(maxsize=512)
@@ -364,8 +344,7 @@ def _as_doubles(name: str, value: Any) -> Any:
     if kind is float or (kind is np.ndarray and value.dtype == np.float64):
         return value
     if isinstance(value, np.ma.MaskedArray):
-        floats: Any = value.astype(np.float64)
-        value = floats.filled(np.nan)
+        value = np.ma.filled(value.astype(np.float64), np.nan)
     try:
         array = np.asarray(value)
     except ValueError:
@@ -395,8 +374,9 @@ def _flatten(numbers: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any
     """Return the shape that columns broadcast to, the columns flat, those of one number as a
     number, and the names of the others. Raises UserError where they do not broadcast."""
     arrays = {name: x for name, x in numbers.items() if type(x) is not float}
-    try:
-        shape = np.broadcast_shapes(*{array.shape for array in arrays.values()})
+    shapes = {array.shape for array in arrays.values()} or {()}
+    try:  # numpy takes 3 us
+        (shape,) = shapes if len(shapes) == 1 else [np.broadcast_shapes(*shapes)]
     except ValueError:
         sizes = ", ".join(f"{n} {x.shape}" for n, x in arrays.items() if x.shape)
         raise UserError(f"columns do not broadcast together: {sizes}") from None
@@ -404,14 +384,9 @@ def _flatten(numbers: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, Any
     varying = []
     for name, array in arrays.items():
         if array.size == 1:
-            flat[name] = float(array.reshape(()))
+            flat[name] = array.item()
             continue
         varying.append(name)
         if array.ndim != 1 or array.shape != shape or not array.flags.carray:
             flat[name] = np.require(np.broadcast_to(array, shape), None, ("C", "A")).reshape(-1)
     return shape, flat, frozenset(varying)
-
-
-def _numbers(arrays: Mapping[str, Array]) -> dict[str, Any]:
-    """Return arrays of one number as numbers."""
-    return {name: array[()] for name, array in arrays.items()}

@@ -15,31 +15,33 @@ from .plan import COLUMNS, COMPILED, FUNCTIONS, ROWS, SOURCE, Formula
 
 
 def statements(formula: Formula) -> list[str]:
-    """Return a function's assignments in C; a name that is assigned again keeps its variable."""
+    """Return a function's statements in C."""
     lines: list[str] = []
-    variables = set(formula.takes)
     for line in formula.tree.body:
         match line:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+            case ast.Assign(targets=[ast.Name()], value=value):
                 operator = getattr(value, "op", value)
                 is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
-                kind = "int64_t " if is_condition else "double "
-                lines.append(f"{kind * (name not in variables)}{ast.unparse(line)};")
-                variables.add(name)
+                lines.append(f"{'int64_t' if is_condition else 'double'} {ast.unparse(line)};")
             case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Call() as call):
                 places = [f"&{ast.unparse(name)}" for name in names]
                 lines.append(f"double {', '.join(map(ast.unparse, names))};")
                 lines.append(f"{ast.unparse(call).removesuffix(')')}, {', '.join(places)});")
+            case ast.Return(value=ast.Tuple(elts=names)):
+                lines += [f"*to_{name} = {name};" for name in map(ast.unparse, names)]
+            case ast.Return():
+                lines.append(f"{ast.unparse(line)};")
     return lines
 
 
 def function_text(formula: Formula) -> str:
-    """Return a function in C, of numbers and of the places of its results."""
+    """Return a function in C, of numbers and of the places of its results, if it has names for
+    them."""
     parameters = [f"double {name}" for name in formula.takes]
     parameters += [f"double *to_{name}" for name in formula.gives]
-    body = [*statements(formula), *(f"*to_{name} = {name};" for name in formula.gives)]
-    head = f"INLINE void {formula.name}({', '.join(parameters)})\n{{"
-    return "\n    ".join([head, *body]) + "\n}"
+    kind = "void" if formula.gives else "double"
+    head = f"INLINE {kind} {formula.name}({', '.join(parameters)})\n{{"
+    return "\n    ".join([head, *statements(formula)]) + "\n}"
 
 
 def loop_text(formula: Formula) -> str:
@@ -47,7 +49,7 @@ def loop_text(formula: Formula) -> str:
     places = {n: f"in[{k}][i]" if n in COLUMNS else f"row[{k}][i]" for n, k in ROWS.items()}
     operands = [places[name] for name in formula.takes]
     operands += [f"&{places[name]}" for name in formula.gives]
-    call = f"EACH {formula.name}({', '.join(operands)});"
+    call = f"EACH {formula.tree.name}({', '.join(operands)});"
     return f"CLONES void each_{formula.name}(const double *const *in, ROW *row)\n{{\n    {call}\n}}"
 
 
@@ -72,9 +74,9 @@ def header() -> str:
 
 def digest() -> str:
     """Return a digest of the functions: a library that has it was built from these."""
-    return hashlib.sha256(
-        (ast.unparse(SOURCE) + str([PIVOT, *Status, *ROWS])).encode()
-    ).hexdigest()[:16]
+    flow = [(formula.takes, formula.gives) for formula in COMPILED.values()]
+    text = ast.unparse(SOURCE) + str([PIVOT, *Status, *COLUMNS, *flow])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 if __name__ == "__main__":

@@ -74,12 +74,13 @@ def _read(name: str) -> tuple[list[Statement], tuple[str, ...], tuple[str, ...]]
 
 def _read_results() -> list[Statement]:
     """Return the statements of ``results``, and of results that are not there those of their
-    formulas, which must take nothing but columns and results."""
+    formulas, which must be of one body and time, and take nothing but columns and results."""
     statements, _, _ = _read("results")
     written = {"COND", "STATUS", *VELOCITIES, *(statement.target for statement in statements)}
     for name in (name for name in RESULTS if name not in written):
         formula = GIVERS[name]
-        assert {*formula.takes} <= {*SCENE, *RESULTS}, f"{name}: write it in results.txt"
+        is_alone = formula.name == formula.tree.name and {*formula.takes} <= {*SCENE, *RESULTS}
+        assert is_alone, f"{name}: write it in results.txt"
         for line in formula.tree.body:
             if isinstance(line, ast.Assign):
                 text = ast.unparse(line.value)
