@@ -62,7 +62,7 @@ def test_accepted(name: str, text: str, value: float, low: float, high: float) -
         ("IA", "2000 lb", "expected lb-ft-s2, lb-in-s2, lb-ft2, kg-m2"),
         ("LOSS", "37 +- 5 %", "a percentage of a percentage"),
         ("MUP", "85 %", "MU takes shares"),
-        ("UX", "skid 62 ft at 0.7", "expected SA, SB, SAF, SBF"),
+        ("SA", "skid 62 ft at 0.7", "a speed after the impact; expected SAF or SBF"),
         ("SAF", "skid -62 ft at 0.7", "above 0"),
         ("SAF", "skid 62 ft at 1.9 +- .11", "above 0, and at most 2"),
         ("UX", ".", "is not an amount"),

@@ -13,7 +13,7 @@ import pytest
 from commands import command
 
 import impact88
-from cases import FILES
+from cases import FILES, INTERSECTION
 from impact88.cli import COMMANDS, GONE
 from impact88.cli.output import FORMS
 
@@ -146,7 +146,7 @@ def test_a_brief_verdict_names_what_the_page_cannot_reveal(number: int, names: s
     [
         ("scene intersecton", "expected intersection, rear-end, head-on, planar, barrier, crush"),
         ("solve printout.txt", "expected a table or a .toml; for a printout use verify"),
-        ("solve case.png", "expected .toml to read, or a table in .csv"),
+        ("solve case.png", "expected a table in .csv"),
         ("report rear.toml", "expected -o FILE.html, FILE.svg or FILE.png"),
     ],
 )
@@ -160,6 +160,35 @@ def test_run_asks_standard_input(folder: Path) -> None:
     outcome = command("run", input=FILES["replies.txt"])
     assert "VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)" in outcome.out
     assert outcome.out == impact88.run(impact88.sample(1)).page
+
+
+@pytest.mark.parametrize(
+    ("changes", "said", "page"),
+    [
+        ((), "missing E (coefficient of restitution); MU", ""),
+        (
+            ("GA=60",),
+            "as impact88 solve finds them: E MU UX UY VX VY",
+            "0      60\n",
+        ),
+        (("SB=1", "SA=90", "E=.2"), "no impact was found, so there is none to run", ""),
+    ],
+)
+def test_a_case_with_other_evidence_is_run_by_its_answer(
+    changes: tuple[str, ...], said: str, page: str
+) -> None:
+    options = [word for change in changes for word in ("--set", change)]
+    outcome = command("run", "-", *options, input=INTERSECTION)
+    assert said in outcome.err
+    assert (outcome.status, page in outcome.out) == (0 if page else 2, True)
+
+
+def test_a_sweep_says_that_limits_are_left_out(folder: Path) -> None:
+    sweep = ("solve", "crash.toml", "--sweep", "MU=0:1:2")
+    words = "takes the middle of UX, VY, E, not their limits"
+    assert words in command(*sweep, folder=folder).err
+    exact = (word for change in ("UX=-25", "VY=40", "E=.2") for word in ("--set", change))
+    assert words not in command(*sweep, *exact, folder=folder).err
 
 
 def test_a_dash_is_standard_input() -> None:

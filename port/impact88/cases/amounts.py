@@ -6,7 +6,7 @@
     triangular 28 30 33                               lower limit, most likely value, upper limit
     normal 30 1.5                                     mean and standard deviation
     85 %                                              of MU: a share of the critical friction
-    skid 62 ft at 0.7 +- 0.05                         of a speed: a skid to rest
+    skid 62 ft at 0.7 +- 0.05                         of SAF, SBF: a skid to rest
 
 A unit beside one of the numbers is the unit of all. Every number is an exact fraction until it is
 in base units (`units`), so that the digits of a bare number reach the 1988 program as typed.
@@ -31,7 +31,7 @@ Kind = Literal["exact", "uniform", "triangular", "normal"]
 TOLERANCE = "+-"
 """Mark of a half width; ± and +/- are read as this."""
 MAX_DRAG = 2.0  # tires on dry pavement reach about 1; 7 is a lost point
-SKIDDING = ("SA", "SB", "SAF", "SBF")
+SPEEDS = ("SA", "SB", "SAF", "SBF")
 """Speeds: sizes, whose directions are HA HB HAF HBF."""
 WORDS = {
     "course": (math.nan, ("TA", "TB")),  # known once the velocity is
@@ -244,7 +244,7 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
         if len(words) > MAX_LENGTH:
             raise UserError(f"is longer than {MAX_LENGTH} characters; expected an amount")
         amount = (_skid if words.startswith("skid") else _amount)(name, words, view)
-        if name in SKIDDING and amount.limits(0.0)[0] < 0:
+        if name in SPEEDS and amount.limits(0.0)[0] < 0:
             raise UserError(
                 f"a speed is not negative; expected 0 or more, or H{name[1:]} turned by 180"
             )
@@ -337,8 +337,8 @@ def _skid(name: str, words: str, view: View) -> Amount:
     One distribution is kept between the limits of the speed; of two, the speed is taken as normal.
     Raises UserError."""
     match = _SKID.fullmatch(words)
-    if name not in SKIDDING:
-        raise UserError(f"a skid gives a speed; expected {', '.join(SKIDDING)}")
+    if name not in ("SAF", "SBF"):
+        raise UserError("a skid to rest gives a speed after the impact; expected SAF or SBF")
     if match is None or not view.units:
         raise UserError("expected distance, unit and friction, such as skid 60 ft at 0.7")
     distance, friction = parts = read("DA", match[1], view), read("E", match[2])

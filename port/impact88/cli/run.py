@@ -53,17 +53,22 @@ def _scene(args: Args) -> Scene:
         return sample(int(args.sample))
     case = case_of(args)
     say("run", case.remarks)
-    scene = dict(case.texts)
-    if absent := [name for name in SCENE if name not in scene]:
+    texts = {name: text for name, text in case.texts.items() if name in SCENE}
+    found: list[str] = []
+    if not SCENE.keys() <= texts.keys():
         from ..report.answers import ask
 
         impact = ask(case).scene
-        found = [name for name in (*absent, *case.ranges) if name in impact]
-        scene |= {name: to_text(impact[name]) for name in found}  # limits are adjusted to it
-        note("run", f"as impact88 solve finds them: {' '.join(absent)}")
+        if not impact:
+            raise UserError("no impact was found, so there is none to run; see solve", case.source)
+        found = [name for name in SCENE if name in impact and name not in texts]
+        texts |= {name: to_text(impact[name]) for name in (*found, *case.ranges) if name in SCENE}
+    scene = Scene(texts, None, case.source)
+    if found:
+        note("run", f"as impact88 solve finds them: {' '.join(found)}")
     if typed := [f"{n} = {case.texts[n]}" for n in case.texts if n not in case.numbers]:
         note("run", f"typed for what is not given: {', '.join(typed)}")
-    return Scene(scene, None, case.source)
+    return scene
 
 
 def _ask(arithmetic: str) -> Run:

@@ -18,7 +18,7 @@ rows; 2 bad input"""
 
 from __future__ import annotations
 
-from ..errors import UserError
+from ..errors import UserError, note
 from ..names import RESULTS
 from .options import (
     CASE,
@@ -78,6 +78,8 @@ def _solve_table(args: Args, is_table: bool) -> int:
     if is_table:
         args.file = args.scene
     case = case_of(args, not is_table)
+    if args.sweep and case.ranges:
+        note("solve", f"a sweep takes the middle of {', '.join(case.ranges)}, not their limits")
     ranges = pairs_of(args.sweep, "--sweep", "NAME=LOW:HIGH:COUNT")
     solver = Solver(
         table if is_table else sweep_table(case, ranges),

@@ -30,7 +30,7 @@ MISSING = "lines or numbers are missing; everything else is what the program pri
 NO_SCENE = "inputs are missing or were not read; give them with --scene if you know them"
 SENTENCES = {
     Kind.NUMBER: "{name} {read}: the program prints {printed}",
-    Kind.EITHER: "{name} {read}, or another so listed: the program prints {printed}",
+    Kind.EITHER: "{name} {read}, or another so listed, would be {printed}",
     Kind.LABEL: "{read} where the program prints {printed!r}",
     Kind.OPEN: "{name} {read}, perhaps misread: the program prints {printed} for what was read",
     Kind.UNREAD: "{name} was not read{instead}{expected}",

@@ -107,7 +107,7 @@ def evidence(result: Reconstruction, view: View = PLAIN) -> str:
     ]
     if agreement.at_odds and agreement.probability < POOR:
         checks = "; ".join(check(result, name, view) for name in agreement.at_odds)
-        sentences.append(f"Most at odds: {checks}")
+        sentences.append(f"Most at odds (exact values are not tested): {checks}")
     if laws:
         sentences.append(laws[:1].upper() + laws[1:])
     return ". ".join(sentences)

@@ -325,7 +325,7 @@ def numbers_of(
         text = round_number(value, decimals)
         rows[name] = Row(
             name,
-            quantity(name).meaning,
+            case.view.meaning(name),
             case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(rules[name], ""),
             text,
             clock(value) if text and "PDOF" in name else "",
@@ -383,8 +383,8 @@ def _impact(case: Case, impact: Reconstruction, wanted: Sequence[str]) -> Answer
         scene = impact.scene()
         more, _ = evaluate(scene, (*wanted, "STATUS"))
         values = {**{n: float(x) for n, x in more.items() if not math.isnan(x)}, **values}
-        if not impact.is_adverse:
-            warnings += status.sentences(int(more["STATUS"]) & ~status.IMPOSSIBLE)
+        said = status.WRONG_SIDES if impact.is_adverse else ~status.IMPOSSIBLE
+        warnings += status.sentences(int(more["STATUS"]) & said)
     is_exact = {*case.entries} - {*case.ranges}
     names = wanted or [name for name in BACKWARD if name not in is_exact]
     results = [n for n in names if n in values or n in impact.intervals]

@@ -36,7 +36,7 @@ def _format_of(path: str) -> _Format:
     """Return reader and writer of a file: CSV for a standard stream. Raises UserError."""
     ending = ".csv" if path == "-" else Path(path).suffix.lower()
     if ending not in _FORMATS:
-        raise UserError(f"expected .toml to read, or a table in {' '.join(_FORMATS)}", path)
+        raise UserError(f"expected a table in {' '.join(_FORMATS)}, or .toml to read", path)
     return _FORMATS[ending]
 
 
