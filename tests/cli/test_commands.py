@@ -35,6 +35,8 @@ STATUSES = """
 0 run --sample 1
 0 run crash.toml
 0 run rear.toml
+0 solve crash.toml --units us
+2 solve crash.toml --units si
 0 run --sample 1 --arithmetic float64
 0 run --sample 1 --set MA=0
 1 run --sample 1 --set IA=0

@@ -43,7 +43,8 @@ WORDS = {
 MAX_LENGTH = 70  # characters of an entry; three and their commas fit the 239 that INPUT keeps
 EXPECTED = (
     "expected such as 25, 28 .. 32, 30 +- 2, 30 +- 5 %, normal 30 1.5, triangular 28 30 33, with "
-    "a unit or without (mph, ft, lb, deg); course of TA TB, locked of MU, estimate of IA IB"
+    "a unit or without (mph, ft, lb, deg); course of TA TB, locked of MU, estimate of IA IB, skid "
+    "60 ft at 0.7 of SAF SBF"
 )
 
 
