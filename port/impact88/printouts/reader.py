@@ -481,8 +481,7 @@ def _count_number(glyphs: Sequence[Glyph]) -> int:
     text = text.rstrip("()%")
     if word and word[0].gap == LINE_GAP:
         return 0
-    is_number = re.search("[0-9]", text) or (len(text) < 3 and text.strip(".-"))
-    return len(text) if is_number and readings(text) else 0
+    return len(text) if re.search("[0-9]", text) and readings(text) else 0
 
 
 def _count_torn(rest: Sequence[Glyph]) -> int:
