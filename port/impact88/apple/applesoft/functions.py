@@ -3,8 +3,8 @@
 Arguments and results may have an extension, which is rounded away only where the ROM does it.
 Coefficients are stored reals in hexadecimal.
 
-Functions named ``..._and_byte`` also return the low byte that INT, called on the way, leaves in
-memory: the power of a negative number reads it, see `power_and_byte`."""
+INT leaves the low byte of its result in memory, where the power of a negative number reads it (see
+`power`). INT, and the functions that call it, take the byte left earlier and return theirs, too."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -42,7 +42,6 @@ QUARTER = real.from_stored("7F00000000")
 HALF = real.from_stored("8000000000")
 RND_FACTOR = real.from_stored("9835447A68")
 RND_ADDEND = real.from_stored("6828B14620")
-FIRST_SEED = real.from_stored("804FC75258")  # RND's seed after power-on
 ONE = real.integer(1)
 EXP_ROUNDING = 0x50  # added by EXP to the extension of x / ln 2 before splitting it
 
@@ -87,13 +86,10 @@ def integer_part(x: Number, left: int = 0) -> IntAndByte:
     return integral, (real.to_integer(integral) & 0xFF if x[0] < real.INTEGER_EXPONENT else left)
 
 
-def exponential(x: Number) -> Number:
-    """EXP: e to the power x. Raises OVERFLOW; underflows to zero."""
-    return exponential_and_byte(x)[0]
+def exponential(x: Number, left: int = 0) -> IntAndByte:
+    """EXP: e to the power x. Raises OVERFLOW; underflows to zero.
 
-
-def exponential_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """EXP, and the byte of INT, which splits x / ln 2 unless its exponent shows it out of range."""
+    INT splits x / ln 2 unless its exponent shows it out of range."""
     e, m, s = turns = _over_ln_two(x)
     if e < BIAS + 8:
         doublings = real.to_integer((e, m & ~0xFF, s))
@@ -122,21 +118,14 @@ def _over_ln_two(x: Number) -> Number:
     return e, m, s
 
 
-def power(left: Number, right: Number) -> Number:
+def power(left: Number, right: Number, byte: int = 0) -> IntAndByte:
     """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X.
 
-    Raises OVERFLOW, and ILLEGAL QUANTITY for a negative left with a fractional right. A negative
-    left to a power of 2^31 or more is positive, as if INT had not been used before."""
-    return power_and_byte(left, right)[0]
-
-
-def power_and_byte(left: Number, right: Number, byte: int = 0) -> IntAndByte:
-    """left ^ right, and the byte of INT.
-
-    For a negative left, the byte that INT (right) leaves decides if right is odd; from 2^31 on it
-    is the byte of an earlier INT."""
+    Raises OVERFLOW, and ILLEGAL QUANTITY for a negative left with a fractional right. For a
+    negative left, the byte that INT (right) leaves decides if right is odd; from 2^31 on it is the
+    byte of an earlier INT."""
     if not right[0]:
-        return exponential_and_byte(ZERO)
+        return exponential(ZERO)
     left = real.rounded(left)
     if not left[0]:
         return ZERO, byte
@@ -148,18 +137,13 @@ def power_and_byte(left: Number, right: Number, byte: int = 0) -> IntAndByte:
             raise illegal_quantity()
         odd = bool(byte & 1)
         left = real.negate(left)
-    result, byte = exponential_and_byte(real.multiply(exponent, logarithm(left)), byte)
+    result, byte = exponential(real.multiply(exponent, logarithm(left)), byte)
     return (real.negate(result) if odd else result), byte
 
 
-def square_root(x: Number) -> Number:
+def square_root(x: Number, left: int = 0) -> IntAndByte:
     """SQR, as (x rounded) ^ 0.5. Raises ILLEGAL QUANTITY for a negative x."""
-    return power(x, HALF)
-
-
-def square_root_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """SQR, and the byte of INT."""
-    return power_and_byte(x, HALF, left)
+    return power(x, HALF, left)
 
 
 @lru_cache(maxsize=64)  # programs use the sine of the same few angles repeatedly
@@ -184,39 +168,25 @@ def _sine(x: Number) -> tuple[Number, bool, Number, Number]:
     return odd_polynomial(SIN_COEFFICIENTS, f), flag, f, turns
 
 
-def sine(x: Number) -> Number:
+def sine(x: Number, left: int = 0) -> IntAndByte:
     """SIN of x radians."""
-    return _sine(x)[0]
-
-
-def cosine(x: Number) -> Number:
-    """COS of x radians, computed as SIN (pi/2 + x)."""
-    return _sine(real.add(HALF_PI, x))[0]
-
-
-def tangent(x: Number) -> Number:
-    """TAN of x radians: the sine divided by the cosine of the same reduced argument."""
-    of_sine, flag, remainder, _ = _sine(real.rounded(x))
-    f = real.add(QUARTER, real.negate(real.absolute(remainder)))
-    if flag:
-        f = real.negate(f)
-    return real.divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
-
-
-def sine_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """SIN, and the byte of INT."""
     result, _, _, turns = _sine(x)
     return result, integer_part(turns, left)[1]
 
 
-def cosine_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """COS, and the byte of INT."""
-    return sine_and_byte(real.add(HALF_PI, x), left)
+def cosine(x: Number, left: int = 0) -> IntAndByte:
+    """COS of x radians, computed as SIN (pi/2 + x)."""
+    return sine(real.add(HALF_PI, x), left)
 
 
-def tangent_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """TAN, and the byte of INT."""
-    return tangent(x), sine_and_byte(real.rounded(x), left)[1]
+def tangent(x: Number, left: int = 0) -> IntAndByte:
+    """TAN of x radians: the sine divided by the cosine of the same reduced argument."""
+    of_sine, flag, remainder, turns = _sine(real.rounded(x))
+    f = real.add(QUARTER, real.negate(real.absolute(remainder)))
+    if flag:
+        f = real.negate(f)
+    result = real.divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
+    return result, integer_part(turns, left)[1]
 
 
 def arc_tangent(x: Number) -> Number:

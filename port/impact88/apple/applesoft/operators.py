@@ -84,7 +84,7 @@ class Real:
     __sub__, __rsub__ = _binary(real.subtract)
     __mul__, __rmul__ = _binary(real.multiply)
     __truediv__, __rtruediv__ = _binary(real.divide)
-    __pow__ = _binary(power)[0]
+    __pow__ = _binary(lambda left, right: power(left, right)[0])[0]
     __lt__, __gt__ = _comparison(operator.lt), _comparison(operator.gt)
     __le__, __ge__ = _comparison(operator.le), _comparison(operator.ge)
     __eq__, __ne__ = _comparison(operator.eq), _comparison(operator.ne)

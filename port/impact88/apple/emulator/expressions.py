@@ -12,9 +12,9 @@ from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
 from .faults import Fault, call_at, fault_if, with_stack
-from .memory import EMPTY, FUNCTION, INTEGER, MINUS, PLUS, STRING, SUBFLG_SIMPLE
+from .memory import FUNCTION, MINUS, PLUS, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
-from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
+from .variables import LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
 MIN_STACK = 59  # CHKMEM: the lowest stack pointer for a formula
 PENDING = 12  # bytes on the stack for an operator that waits for its right operand
@@ -59,11 +59,11 @@ NUMERIC: dict[str, Callable[[Number], Number]] = {
 }
 TAKING_INT: dict[str, Callable[[Number, int], functions.IntAndByte]] = {
     "INT": functions.integer_part,
-    "SQR": functions.square_root_and_byte,
-    "EXP": functions.exponential_and_byte,
-    "COS": functions.cosine_and_byte,
-    "SIN": functions.sine_and_byte,
-    "TAN": functions.tangent_and_byte,
+    "SQR": functions.square_root,
+    "EXP": functions.exponential,
+    "COS": functions.cosine,
+    "SIN": functions.sine,
+    "TAN": functions.tangent,
 }
 """INT, and functions that use it: the byte they leave in CHARAC affects a later ^."""
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
@@ -201,7 +201,7 @@ class Expressions(Variables):
                             order = compare(left, fac)
                         fac = ONE if relation >> 1 & TRUTHS[order] else ZERO
                     elif waiting == POWER:
-                        fac, self.charac = functions.power_and_byte(left, fac, self.charac)
+                        fac, self.charac = functions.power(left, fac, self.charac)
                     elif waiting == NEGATE:
                         fac = real.negate(fac)
                     elif waiting == NOT:
@@ -236,10 +236,9 @@ class Expressions(Variables):
             pos += 1
             byte = ram[pos]
         self.valtyp = 0
-        if LETTER_A <= byte <= LETTER_Z:
-            name, self.txtptr, subscripts = self.names.get(pos) or self.name_at(pos)
-            return self._variable(sp - 5, name, subscripts)
         self.txtptr = pos
+        if LETTER_A <= byte <= LETTER_Z:
+            return self._variable(sp - 5)
         try:
             if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
                 return self.constant()
@@ -264,25 +263,13 @@ class Expressions(Variables):
         self.expect(CLOSE, sp)
         return fac
 
-    def _variable(self, sp: int, name: int, subscripts: bool) -> Number:
+    def _variable(self, sp: int) -> Number:
         """FRM_VARIABLE: return the value of a variable or an array element."""
-        kind = name & INTEGER
-        self.inttyp = kind == INTEGER
-        if subscripts and not self.subflg:
-            self.valtyp = IS_STRING if kind == STRING else 0
-            address = self.array_element(name, sp)
-        else:
-            if self.inttyp and self.subflg:
-                raise Fault("SYNTAX", sp)
-            self.subflg = 0
-            address = self.simple.get(name, EMPTY)
-            if address != EMPTY:
-                self.varpnt = address
-        if kind == STRING:
-            self.valtyp = IS_STRING
+        address = self.variable(sp, make=False)
+        if self.valtyp:
             e, m, s = self.fac
             return e, m & 0xFFFF000000 | (address & 0xFF) << 16 | address & 0xFF00, s
-        return self.integer_value(address) if kind else self.value(address)
+        return self.integer_value(address) if self.inttyp else self.value(address)
 
     def function_name(self, sp: int) -> int:
         """FNC: return the address of the function named after FN, created if necessary. A name with

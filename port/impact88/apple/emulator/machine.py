@@ -10,7 +10,7 @@ memory a line is the address of the next one, its number, its tokens and a zero;
 ends the program. LIST and GOTO follow the addresses; a running program continues with the bytes
 after a line's zero."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -281,6 +281,7 @@ class Machine(InputOutput):
         place = self._address(self.sp - 4)
         bell, normal = partial(self.put, "\a"), partial(self.set_mode, NORMAL)
         routines: dict[int, Callable[[], object]] = {
+            **self.screen.routines,
             0xF328: self.forget_error,
             0xD66C: self.clear,
             0xD683: self.clear_stack,
@@ -299,7 +300,7 @@ class Machine(InputOutput):
         }
         if place in routines:
             routines[place]()
-        elif not self.screen.call(place) and self.peek(place) != 0x60:
+        elif self.peek(place) != 0x60:
             self.refuse(f"CALL {place}")
 
     def himem_(self) -> None:
@@ -562,15 +563,6 @@ class Machine(InputOutput):
     def cont(self) -> None:
         fault_if(not self.oldtext >> 8, "CAN'T CONTINUE", self.sp - 2)
         self.txtptr, self.curlin = self.oldtext, self.oldlin
-
-    def lines(self) -> Iterator[tuple[int, bytes]]:
-        """Yield number and tokens of each line, following the addresses."""
-        ram, address = self.ram, self.txttab
-        addresses: set[int] = set()
-        while ram[address + 1] and address not in addresses and address < ROM:
-            addresses.add(address)
-            yield self.word(address + 2), bytes(ram[address + 4 : ram.index(0, address + 4)])
-            address = self.word(address)
 
     def load(self, lines: Iterable[tuple[int, bytes]]) -> None:
         """Replace the program by lines, in their order. Raises OUT OF MEMORY without changing

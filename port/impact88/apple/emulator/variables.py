@@ -213,9 +213,10 @@ class Variables(Memory):
             if address >= self.fretop:
                 raise ApplesoftError("OUT OF MEMORY")
 
-    def variable(self, sp: int, dimensions: int = 0, mark: int = 0) -> int:
+    def variable(self, sp: int, dimensions: int = 0, mark: int = 0, make: bool = True) -> int:
         """PTRGET: read a variable's name and return the address of its value, created if necessary.
-        ``dimensions``: nonzero for DIM, whose arrays must be new; ``mark``: the top bit for FN."""
+        ``dimensions``: nonzero for DIM, whose arrays must be new; ``mark``: the top bit for FN;
+        ``make``: False in a formula, where a simple variable never assigned is a zero in ROM."""
         entry = self.names.get(self.txtptr)
         if not entry:
             if not 65 <= self.character() <= 90:  # ISLETC: A to Z; a small letter begins no name
@@ -232,6 +233,8 @@ class Variables(Memory):
         name |= mark
         address = self.simple.get(name)
         if address is None:
+            if not make:
+                return EMPTY
             address = call_at(sp - 4, self._make, name)
         self.varpnt = address
         return address
