@@ -38,8 +38,8 @@ def run_machine(machine: Applesoft) -> Run:
     printout, error = machine.take_output(), machine.machine.error
     return Run(
         printout,
-        error and error.message,
-        error and error.line,
+        error.message if error else None,
+        error.line if error else None,
         machine.reals(),
         machine.array("A"),
         error is None and "ZERO DETERMINANT" in printout,

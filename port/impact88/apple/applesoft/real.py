@@ -264,8 +264,6 @@ def floor(x: Number) -> Number:
 def _from_integer(n: int) -> Number:
     size = abs(n)
     length = size.bit_length()
-    if length > 32:
-        raise ValueError(f"{n} has more than 32 bits; write it as decimal text")
     return (BIAS + length, size << 40 - length, int(n < 0)) if n else ZERO
 
 
@@ -273,15 +271,13 @@ _SMALL = {n: _from_integer(n) for n in range(-16, 129)}
 
 
 def integer(n: int) -> Number:
-    """A whole number of at most 32 bits, exact. Raises ValueError for a larger one."""
+    """A whole number of at most 32 bits, exact."""
     return _SMALL.get(n) or _from_integer(n)
 
 
 def from_stored(stored: bytes | str, extension: int = 0) -> Number:
     """The value of five stored bytes (or ten hexadecimal digits), with an extension byte."""
     data = bytes.fromhex(stored) if isinstance(stored, str) else stored
-    if len(data) != 5:
-        raise ValueError(f"a stored real has five bytes, not {len(data)}")
     e = data[0]
     if e == 0:
         return ZERO

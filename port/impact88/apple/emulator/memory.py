@@ -101,14 +101,12 @@ class Memory:
 
     variables_changed: Callable[[], None]
 
-    def __init__(
-        self, keyboard: Keyboard, screen: Device, printer: Device | None, blanks: bool, **dos: bool
-    ) -> None:
+    def __init__(self, keyboard: Keyboard, screen: Device, blanks: bool, **dos: bool) -> None:
         self.ram = bytearray(ADDRESSES + _PADDING)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
         self.ram[0xF1] = 1  # SPEED= 255
         self.screen = Screen(self.ram, screen, blanks)
-        self.console = Console(keyboard, self.screen.write, printer, **dos)
+        self.console = Console(keyboard, self.screen.write, **dos)
         self.console.editor = self.screen
         self.seed, self.fac = FIRST_SEED, AFTER_TYPING
         self.sp = STACK

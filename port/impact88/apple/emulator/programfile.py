@@ -11,12 +11,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from ...errors import UserError
+from ..applesoft.console import MAX_INPUT
 from .tokens import (
     DATA,
     FIRST,
     LAST_LINE,
     LAST_STATEMENT,
-    MAX_INPUT,
     REM,
     TOKENS,
     detokenise,
@@ -40,6 +40,7 @@ _PROMPT = re.compile(r"\] *(?:LIST[-, 0-9]*)?$", re.I)
 _NUMBER = re.compile(r"([0-9]{1,5}) ")
 _KEYWORD = re.compile(f" ({'|'.join(map(re.escape, sorted(TOKENS, key=len)[::-1]))})(?: |(?=\n)|$)")
 _TEXT = bytes((*range(0x20, 0x7F), *b"\t\n\f\r"))
+_NO_KEY = re.compile(r"[\t\0]|[^\0-~]")  # a character that no key types
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 Line = tuple[int, bytes]
@@ -107,11 +108,10 @@ def _rows(text: str) -> list[Row]:
     rows = []
     for number, row in enumerate(texts, 1):
         row = row.strip("\f")
-        for column, character in enumerate(row, 1):
-            if not " " <= character <= "~" and (character > "~" or character in "\t\0"):
-                name = "a tab" if character == "\t" else f"character {_code(character)}"
-                place = f"row {number}, column {column}"
-                raise UserError(f"{place}: {name}; expected characters that an Apple's keys type")
+        if wrong := _NO_KEY.search(row):
+            name = "a tab" if wrong[0] == "\t" else f"character {_code(wrong[0])}"
+            place = f"row {number}, column {wrong.end()}"
+            raise UserError(f"{place}: {name}; expected characters that an Apple's keys type")
         if row.strip(" "):
             rows.append(Row(number, row))
     while rows and _PROMPT.match(rows[0].text):

@@ -36,9 +36,10 @@ SEMICOLON = ord(";")
 OPEN = ord("(")
 CLOSE = ord(")")
 LAST_LINE = 63999  # the ROM's largest line number
-MAX_INPUT = 239  # characters of a typed line that Applesoft keeps
 
-_LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a")
+_LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a", "", "", "")
+"""LIST's words for the bytes from `FIRST` on: after the keywords the ROM's table continues with a
+zero, which is an empty word, and the error messages."""
 _BY_LETTER: dict[str, list[tuple[str, int]]] = {}
 for _word, _token in TOKENS.items():
     _BY_LETTER.setdefault(_word[0], []).append((_word, _token))
@@ -123,7 +124,7 @@ def detokenise(tokens: bytes) -> str:
             if byte < FIRST:
                 text += chr(byte)
                 continue
-            word = print_word if byte == PRINT else spelling(byte)
+            word = print_word if byte == PRINT else _LISTED[byte - FIRST]
             apart = text and not text.endswith((" ", "("))
             if not keyword and text.endswith(":") and place < len(tokens) - 1:
                 apart = False
@@ -136,16 +137,9 @@ def detokenise(tokens: bytes) -> str:
     return text
 
 
-def spelling(token: int) -> str:
-    """Return LIST's text for a token. After the keywords the ROM's table continues with a zero,
-    which is an empty word, and the error messages."""
-    index = token - FIRST
-    return _LISTED[index] if index < len(_LISTED) else ""
-
-
 def list_text(byte: int) -> str:
     """Return LIST's text for a byte of a line."""
-    return chr(byte) if byte < FIRST else f" {spelling(byte)} "
+    return chr(byte) if byte < FIRST else f" {_LISTED[byte - FIRST]} "
 
 
 def following_line(text: bytes | bytearray, line: int) -> int:

@@ -13,9 +13,9 @@ from math import prod
 from struct import Struct
 from typing import NamedTuple
 
-from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .faults import Fault, call_at, with_stack
+from .faults import Fault, call_at
 from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
@@ -339,12 +339,8 @@ class Variables(Memory):
     def assign_integer(self, address: int, x: Number, sp: int) -> None:
         """AYINT: assign a number, rounded, to an integer variable. Raises ILLEGAL QUANTITY from
         32768 and -32768 on; a wrong bit in the ROM's constant admits -32768.0005, as 32767."""
-        try:
-            x = rounded(x)
-            if x[0] >= 0x90 and compare(LOWEST, x):
-                raise illegal_quantity()
-            n = to_integer(x) & 0xFFFF
-        except ApplesoftError as error:
-            raise with_stack(error, sp) from None
+        x = call_at(sp, rounded, x)
+        if x[0] >= 0x90 and compare(LOWEST, x):
+            raise Fault("ILLEGAL QUANTITY", sp)
         if address < ROM:
-            self.ram[address : address + 2] = n.to_bytes(2, "big")
+            self.ram[address : address + 2] = (to_integer(x) & 0xFFFF).to_bytes(2, "big")
