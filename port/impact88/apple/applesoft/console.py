@@ -30,6 +30,7 @@ BUFFER_LENGTH = 256  # a line of this length is abandoned
 
 SHOWN_SLOTS = (0, 1)  # the screen, and the usual slot of a printer, as line 180 of the listing says
 _SURROGATES = range(0xDC80, 0xDD00)  # undecodable bytes, as Python's "surrogateescape" has them
+_CAPITALS = {n: n & 0x5F for n in range(0x60, 0x80)}
 _CURSOR_KEYS = {"I": "D", "J": "B", "K": "A", "M": "C"}
 """Keys after ESC that may be repeated -> the key with the same effect that ends the sequence."""
 
@@ -37,8 +38,8 @@ Keyboard = Callable[[], "str | None"]
 Device = Callable[[str], object]
 Read = Callable[[str, int], "tuple[Any, int]"]
 
-_SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
-_COMMAND_WORD = r" *([A-Za-z]+#?)"
+_SLOT_COMMAND = r"\x04 *[Pp][Rr] *# *([0-7])"
+_COMMAND_WORD = r"\x04 *([A-Za-z]+#?)"
 _REPLY_ENDS = ("", ":")  # a colon ends a reply as it ends a statement
 
 
@@ -106,7 +107,7 @@ class Console:
             return
         for piece in text.splitlines(keepends=True):
             if self._command is None and self._line_begins and piece[0] == CONTROL_D:
-                self._command, piece = "", piece[1:]
+                self._command = ""
             self._line_begins = piece.endswith("\n")
             if self._command is None:
                 self._show(piece)
@@ -301,10 +302,12 @@ def keyboard_codes(text: str) -> str:
 
     An undecodable byte keeps its low seven bits; other characters become ``?``, so that a
     typographic minus is refused where a number is expected."""
+    if text.isascii():
+        return text
     codes = map(ord, text)
     return "".join(chr(n & 0x7F) if n < 0x80 or n in _SURROGATES else "?" for n in codes)
 
 
 def capitals(typed: str) -> str:
     """Return a text in capital letters, as the monitor converts it: ``{`` becomes ``[``."""
-    return "".join(chr(n & 0x5F) if n >= 0x60 else chr(n) for n in map(ord, keyboard_codes(typed)))
+    return keyboard_codes(typed).translate(_CAPITALS)

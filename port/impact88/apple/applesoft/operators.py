@@ -8,9 +8,20 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
-from . import real
 from .functions import power
-from .real import BIAS, Number, compare, integer, rounded, to_stored
+from .real import (
+    BIAS,
+    Number,
+    add,
+    compare,
+    divide,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    subtract,
+    to_stored,
+)
 
 
 def _binary(rule: Callable[[Number, Number], Number]) -> tuple[Callable[..., Real], ...]:
@@ -68,12 +79,12 @@ class Real:
         return f"Real({float(self)!r}, {self.to_bytes().hex()}:{self.number[1] & 0xFF:02x})"
 
     def __neg__(self) -> Real:
-        return Real(real.negate(self.number))
+        return Real(negate(self.number))
 
-    __add__, __radd__ = _binary(real.add)
-    __sub__, __rsub__ = _binary(real.subtract)
-    __mul__, __rmul__ = _binary(real.multiply)
-    __truediv__, __rtruediv__ = _binary(real.divide)
+    __add__, __radd__ = _binary(add)
+    __sub__, __rsub__ = _binary(subtract)
+    __mul__, __rmul__ = _binary(multiply)
+    __truediv__, __rtruediv__ = _binary(divide)
     __pow__ = _binary(lambda left, right: power(left, right)[0])[0]
     __lt__, __gt__ = _comparison(operator.lt), _comparison(operator.gt)
     __le__, __ge__ = _comparison(operator.le), _comparison(operator.ge)

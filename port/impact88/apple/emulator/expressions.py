@@ -2,17 +2,31 @@
 
 Like the ROM, this module reads and computes in one pass, with the same order of events and errors,
 and with the 6502's stack pointer at a routine's entry, ``sp``. A value is the content of the
-accumulator, a triple of `real`. Where the ROM takes a string for a number, so does this module:
-most functions are computed before the type of the argument is checked; CHR$, PEEK, FRE and POS
-never check it."""
+accumulator, a triple of `applesoft.real`. Where the ROM takes a string for a number, so does this
+module: most functions are computed before the type of the argument is checked; CHR$, PEEK, FRE and
+POS never check it."""
 
 from collections.abc import Callable
 
-from ..applesoft import decimaltext, functions, real
+from ..applesoft import decimaltext, functions
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
-from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
+from ..applesoft.real import (
+    INTEGER_EXPONENT,
+    ZERO,
+    Number,
+    absolute,
+    add,
+    compare,
+    divide,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    subtract,
+    to_integer,
+)
 from .faults import Fault, call_at, fault_if, with_stack
-from .memory import FUNCTION, MINUS, PLUS, SUBFLG_SIMPLE
+from .memory import DIGITS, FUNCTION, LETTERS, MINUS, PLUS, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
@@ -21,10 +35,6 @@ PENDING = 12  # bytes on the stack for an operator that waits for its right oper
 DIGITS_COUNTED = 36  # the byte that FOUT leaves in VARPNT
 LARGEST_ADDRESS = 0x90  # GETADR: the largest exponent of an address
 POINT = ord(".")
-DIGIT_0 = ord("0")
-DIGIT_9 = ord("9")
-LETTER_A = ord("A")
-LETTER_Z = ord("Z")
 FN = TOKENS["FN"]
 NOT_TOKEN = TOKENS["NOT"]
 OR_TOKEN = TOKENS["OR"]
@@ -45,7 +55,7 @@ PRECEDENCES = (0x79, 0x79, 0x7B, 0x7B, 0x7D, 0x50, 0x46, 0x7F, 0x7F, 0x64, 0)  #
 RELATIONAL = PRECEDENCES[RELATION]
 ONE = integer(1)
 ARITHMETIC: tuple[Callable[[Number, Number], Number], ...]
-ARITHMETIC = (real.add, real.subtract, real.multiply, real.divide)
+ARITHMETIC = (add, subtract, multiply, divide)
 ERROR_DEPTHS = (3, 3, 5, 3, 6)
 """Bytes below a level's entry at which + - * / and ^ detect their errors."""
 SIGNS = (1, 2, 4)  # CPRTYP's bits for >, = and <
@@ -53,7 +63,7 @@ TRUTHS = {1: 4, 0: 2, -1: 1}  # CPRMASK's bits by the result of `compare` for th
 
 NUMERIC: dict[str, Callable[[Number], Number]] = {
     "SGN": functions.sign,
-    "ABS": real.absolute,
+    "ABS": absolute,
     "LOG": functions.logarithm,
     "ATN": functions.arc_tangent,
 }
@@ -203,7 +213,7 @@ class Expressions(Variables):
                     elif waiting == POWER:
                         fac, self.charac = functions.power(left, fac, self.charac)
                     elif waiting == NEGATE:
-                        fac = real.negate(fac)
+                        fac = negate(fac)
                     elif waiting == NOT:
                         fac = ZERO if fac[0] else ONE
                     elif waiting == OR:
@@ -237,10 +247,10 @@ class Expressions(Variables):
             byte = ram[pos]
         self.valtyp = 0
         self.txtptr = pos
-        if LETTER_A <= byte <= LETTER_Z:
+        if byte in LETTERS:
             return self._variable(sp - 5)
         try:
-            if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
+            if byte in DIGITS or byte == POINT:
                 return self.constant()
             if byte == QUOTE:
                 return self.literal(pos + 1)

@@ -86,9 +86,6 @@ class Frame(NamedTuple):
     sign: int = 0
 
 
-NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
-
-
 class Machine(InputOutput):
     """An Apple II Plus with 48K, as seen by a BASIC program.
 
@@ -420,8 +417,8 @@ class Machine(InputOutput):
         else:
             self.forpnt = self.variable(self.sp - 4)
         while True:
-            frame = frames[-1] if frames else NO_FRAME
-            if frame.sp != self.sp or frame.variable != self.forpnt:
+            frame = frames[-1] if frames else None
+            if frame is None or frame.sp != self.sp or frame.variable != self.forpnt:
                 n, sp = self._find_loop()
                 fault_if(n < 0, "NEXT WITHOUT FOR", self.sp - 2)
                 self.set_stack(sp)

@@ -66,6 +66,7 @@ PLUS = TOKENS["+"]
 MINUS = TOKENS["-"]
 SUBFLG_SIMPLE = 0x80  # SUBFLG in FOR and DEF FN: neither arrays nor integers are allowed
 DIGITS = range(48, 58)  # the codes of digits
+LETTERS = range(65, 91)  # of capital letters
 HEADER = 4  # bytes of a line before its tokens: the next line's address and the number
 MAX_LINE_HIGH_BYTE = 0x19  # from this high byte on LINGET refuses a further digit: past 63999
 # top bits of a name's two bytes in memory mark its type; a real has none
@@ -146,7 +147,7 @@ class Memory:
         _add_note(self.ignored, what)
 
     def _pass_over_command(self, word: str) -> None:
-        _add_note(self.ignored, f"the disk command {word} was passed over: there is no disk")
+        self.ignore(f"the disk command {word} was passed over: there is no disk")
 
     def peek(self, address: int) -> int:
         """Return the byte at an address."""
@@ -164,7 +165,7 @@ class Memory:
             return APPLE_II_PLUS[address]
         unkept = address in UNKEPT and address not in self.poked and address not in KEPT_IN_RAM
         if unkept or address >= ROM:
-            _add_note(self.ignored, f"PEEK ({address}) gave 0: that byte is not modelled")
+            self.ignore(f"PEEK ({address}) gave 0: that byte is not modelled")
         return 0 if address >= ROM else self.ram[address]
 
     def poke(self, address: int, value: int) -> None:

@@ -234,10 +234,8 @@ def _decode(text: str) -> bytes | None:
 
 def _begins_line(tokens: bytes) -> bool:
     """Return True if a statement may begin with these tokens."""
-    if not tokens:
-        return False
-    first = tokens[0]
-    return FIRST <= first <= LAST_STATEMENT or (chr(first).isascii() and chr(first).isalpha())
+    first = tokens[:1]
+    return first.isalpha() or bytes([FIRST]) <= first <= bytes([LAST_STATEMENT])
 
 
 # --- typed text -------------------------------------------------------------------------------

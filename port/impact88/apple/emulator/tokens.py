@@ -46,18 +46,18 @@ for _word, _token in TOKENS.items():
 
 
 def _keyword(text: str, start: int) -> tuple[int, int] | None:
-    """Return token and end of the keyword at ``start``, ignoring blanks, or None. (A single regular
-    expression for all keywords takes three times as long.)"""
+    """Return token and end of the keyword at ``start``, ignoring blanks, or None. ``text`` ends
+    with a zero. (A single regular expression for all keywords takes three times as long.)"""
     for word, token in _BY_LETTER.get(text[start], ()):
         position = start
         for letter in word:
-            while text[position : position + 1] == " ":
+            while text[position] == " ":
                 position += 1
-            if text[position : position + 1] != letter:
+            if text[position] != letter:
                 break
             position += 1
         else:
-            if token != AT or text[position : position + 1] not in ("N", "O"):
+            if token != AT or text[position] not in ("N", "O"):
                 return token, position
     return None
 
@@ -67,16 +67,16 @@ def tokenise(line: str, *, folded: bool = False) -> bytes:
     """Return the bytes of a line's statements as the ROM's parser makes them, without the final
     zero. ``folded``: small letters outside quotes and remarks count as capitals."""
     line = keyboard_codes(line)
-    text = line.upper() if folded else line
+    text = (line.upper() if folded else line) + "\0"
     out = bytearray()
     position = 0
     in_data = False
-    while position < len(text):
+    while position < len(line):
         character = text[position]
         if character == " " and not in_data:
             position += 1
         elif character == '"':
-            end = text.find('"', position + 1) + 1 or len(text)
+            end = text.find('"', position + 1) + 1 or len(line)
             out += line[position:end].encode("ascii")
             position = end
         elif in_data or "0" <= character <= ";":

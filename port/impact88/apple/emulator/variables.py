@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
 from .faults import Fault, call_at
-from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
+from .memory import EMPTY, INTEGER, LETTERS, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
 DESCRIPTOR = 3  # bytes
@@ -219,7 +219,7 @@ class Variables(Memory):
         ``make``: False in a formula, where a simple variable never assigned is a zero in ROM."""
         entry = self.names.get(self.txtptr)
         if not entry:
-            if not 65 <= self.character() <= 90:  # ISLETC: A to Z; a small letter begins no name
+            if self.character() not in LETTERS:  # ISLETC; a small letter begins no name
                 raise Fault("SYNTAX", sp)
             entry = self.name_at(self.txtptr)
         name, self.txtptr, subscripts = entry
