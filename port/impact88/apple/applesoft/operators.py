@@ -89,7 +89,6 @@ class Real:
     __lt__, __gt__ = _comparison(operator.lt), _comparison(operator.gt)
     __le__, __ge__ = _comparison(operator.le), _comparison(operator.ge)
     __eq__, __ne__ = _comparison(operator.eq), _comparison(operator.ne)
-    __hash__ = None  # type: ignore[assignment]
 
 
 def _number(operand: object) -> Number:

@@ -149,7 +149,7 @@ class Applesoft:
         ApplesoftError
             OUT OF MEMORY; the present program is kept.
         """
-        self.machine.load(read_program(program).lines)
+        self.machine.load(read_program(program))
 
     def type_line(self, text: str) -> ApplesoftError | None:
         """Enter a line typed at the prompt, small letters as capitals.

@@ -28,7 +28,7 @@ _CONTROLS = range(0x80, 0xA0)  # not shown; RETURN, control-J and control-H move
 _BACKSPACE = 0x88
 _LINE_FEED = 0x8A
 _RETURN = 0x8D
-_USUAL_MASKS = (NORMAL, INVERSE, FLASHING)
+_USUAL_MASKS = (NORMAL, INVERSE, FLASHING)  # under which all characters are visible
 _SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
 """A visible character, or the end of the line."""
 _TITLE = bytes(code | 0x80 for code in b"APPLE ][")  # in the first row after power-on
@@ -82,11 +82,6 @@ class Screen(Editor):
             0xFB2F: self.full_window,
         }
 
-    @property
-    def shows(self) -> bool:
-        """True if all characters are visible, as under the masks that the ROM sets."""
-        return self.mask in _USUAL_MASKS
-
     def write(self, text: str) -> None:
         gap = max(self.column - self._expected, 0) if self._blanks else 0
         sent = text
@@ -99,7 +94,11 @@ class Screen(Editor):
         self._expected = self.column - gap
 
     def _draw(self, text: str) -> None:
-        if self.shows and text.isprintable() and self.column + len(text) < self.width:
+        if (
+            self.mask in _USUAL_MASKS
+            and text.isprintable()
+            and self.column + len(text) < self.width
+        ):
             codes = text.encode("latin-1").translate(_codes(self.mask))
             self._fill(self.address + self.column, codes)
             self.column += len(text)
