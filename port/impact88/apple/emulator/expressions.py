@@ -248,7 +248,11 @@ class Expressions(Variables):
         self.valtyp = 0
         self.txtptr = pos
         if byte in LETTERS:
-            return self._variable(sp - 5)
+            address = self.variable(sp - 5, make=False)
+            if self.valtyp:
+                e, m, s = self.fac
+                return e, m & 0xFFFF000000 | (address & 0xFF) << 16 | address & 0xFF00, s
+            return self.integer_value(address) if self.inttyp else self.value(address)
         try:
             if byte in DIGITS or byte == POINT:
                 return self.constant()
@@ -272,14 +276,6 @@ class Expressions(Variables):
         fac = self.formula(sp - 2)
         self.expect(CLOSE, sp)
         return fac
-
-    def _variable(self, sp: int) -> Number:
-        """FRM_VARIABLE: return the value of a variable or an array element."""
-        address = self.variable(sp, make=False)
-        if self.valtyp:
-            e, m, s = self.fac
-            return e, m & 0xFFFF000000 | (address & 0xFF) << 16 | address & 0xFF00, s
-        return self.integer_value(address) if self.inttyp else self.value(address)
 
     def function_name(self, sp: int) -> int:
         """FNC: return the address of the function named after FN, created if necessary. A name with

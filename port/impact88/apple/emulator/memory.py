@@ -75,7 +75,7 @@ STRING = 0x0080
 FUNCTION = 0x8000
 
 _NUMERAL = re.compile(rb" *[-+]?[ 0-9]*(?:\.[ 0-9]*)?(?:E *[-+%c%c]?[ 0-9]*)?" % (PLUS, MINUS))
-_NAME = re.compile(rb"([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")
+_NAME = re.compile(rb" *([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")
 MARKS = {b"": 0, b"$": STRING, b"%": INTEGER}
 _SIGNS = bytes.maketrans(bytes((PLUS, MINUS)), b"+-")
 
@@ -239,10 +239,13 @@ class Memory:
         self.txtptr = self.ram.index(0, self.txtptr)
         self.charac = 0
 
-    def name_at(self, pos: int) -> Name:
-        """Return the name that begins at an address: two characters are significant."""
+    def name_at(self, sp: int) -> Name:
+        """Return the name at TXTPTR, of which two characters count. Raises SYNTAX if there is none:
+        a small letter begins no name."""
+        pos = self.txtptr
         match = _NAME.match(self.ram, pos)
-        assert match is not None
+        if match is None:
+            raise Fault("SYNTAX", sp)
         first, second, mark = match.groups()
         key = ord(first) << 8 | ord(second or b"\0") | MARKS[mark]
         end = match.end()

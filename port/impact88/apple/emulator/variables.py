@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
 from .faults import Fault, call_at
-from .memory import EMPTY, INTEGER, LETTERS, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
+from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
 DESCRIPTOR = 3  # bytes
@@ -217,12 +217,7 @@ class Variables(Memory):
         """PTRGET: read a variable's name and return the address of its value, created if necessary.
         ``dimensions``: nonzero for DIM, whose arrays must be new; ``mark``: the top bit for FN;
         ``make``: False in a formula, where a simple variable never assigned is a zero in ROM."""
-        entry = self.names.get(self.txtptr)
-        if not entry:
-            if self.character() not in LETTERS:  # ISLETC; a small letter begins no name
-                raise Fault("SYNTAX", sp)
-            entry = self.name_at(self.txtptr)
-        name, self.txtptr, subscripts = entry
+        name, self.txtptr, subscripts = self.names.get(self.txtptr) or self.name_at(sp)
         self.valtyp = IS_STRING if name & INTEGER == STRING else 0
         self.inttyp = name & INTEGER == INTEGER
         if self.inttyp and self.subflg:
