@@ -21,6 +21,8 @@ unit when exponents are equal), `_multiply_with_defect` (double zero byte), and 
 missing carry (`compare`).
 """
 
+from functools import lru_cache
+
 from .errorcodes import division_by_zero, overflow
 
 Number = tuple[int, int, int]
@@ -261,18 +263,12 @@ def floor(x: Number) -> Number:
 # --- whole numbers and stored bytes -----------------------------------------------------------
 
 
-def _from_integer(n: int) -> Number:
+@lru_cache(maxsize=512)  # mostly digits, subscripts and the constants of formulas
+def integer(n: int) -> Number:
+    """A whole number of at most 32 bits, exact."""
     size = abs(n)
     length = size.bit_length()
     return (BIAS + length, size << 40 - length, int(n < 0)) if n else ZERO
-
-
-_SMALL = {n: _from_integer(n) for n in range(-16, 129)}
-
-
-def integer(n: int) -> Number:
-    """A whole number of at most 32 bits, exact."""
-    return _SMALL.get(n) or _from_integer(n)
 
 
 def from_stored(stored: bytes | str, extension: int = 0) -> Number:
