@@ -8,13 +8,12 @@ import gzip
 import json
 from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .applesoft import decimaltext, functions, real
 from .applesoft.errorcodes import ApplesoftError
-
-if TYPE_CHECKING:
-    from .emulator.emulator import Applesoft
+from .emulator.emulator import Applesoft
+from .emulator.expressions import NUMERIC, TAKING_INT
 
 MAX_STATEMENTS = 3_000_000  # more than any captured program executes
 
@@ -28,22 +27,16 @@ ENDINGS = ("bas", "in", "out", "scr")
 """Endings of a program's files: its text, the replies, the output, the screen at the end."""
 
 _ROUTINES: Mapping[str, Callable[..., real.Number]] = {
-    "add": real.add,
-    "sub": real.subtract,
-    "mul": real.multiply,
-    "div": real.divide,
-    "pow": functions.power,
-    "neg": real.negate,
-    "abs": real.absolute,
-    "sgn": functions.sign,
-    "int": real.floor,
-    "sqr": functions.square_root,
-    "exp": functions.exponential,
-    "log": functions.logarithm,
-    "sin": functions.sine,
-    "cos": functions.cosine,
-    "tan": functions.tangent,
-    "atn": functions.arc_tangent,
+    **NUMERIC,
+    "ADD": real.add,
+    "SUB": real.subtract,
+    "MUL": real.multiply,
+    "DIV": real.divide,
+    "NEG": real.negate,
+}
+_TAKING_INT: Mapping[str, Callable[..., functions.IntAndByte]] = {
+    **TAKING_INT,
+    "POW": functions.power,
 }
 
 
@@ -102,7 +95,10 @@ def call(operation: str, first: str, second: str, extension: str) -> str:
             order = real.compare(x, real.from_stored(second, low))
             return {1: "01", 0: "00", -1: "ff"}[order]
         operands = [x, real.from_stored(second, low)] if second else [x]
-        return _format_number(_ROUTINES[operation](*operands))
+        word = operation.upper()
+        if word in _TAKING_INT:
+            return _format_number(_TAKING_INT[word](*operands)[0])
+        return _format_number(_ROUTINES[word](*operands))
     except ApplesoftError as error:
         return f"E{error.code}"
 
@@ -142,7 +138,7 @@ def memory_contents(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> di
     return contents
 
 
-def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Applesoft", str]:
+def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
     """Type a program into the emulator and RUN it, then type the keys until they are used up.
 
     The keys answer INPUT, GET or the prompt. Returns the machine and the output between the echo of
@@ -156,8 +152,6 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Appl
         machine.machine.statements_left = MAX_STATEMENTS
         machine.feed_keys(keys)
         yield "RUN"
-
-    from .emulator.emulator import Applesoft
 
     lines = type_lines()
     machine = Applesoft(lambda: next(lines, None), blanks=blanks)

@@ -5,8 +5,8 @@ between two printouts is due to the arithmetic."""
 from __future__ import annotations
 
 import math
-from collections import namedtuple
 from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 from .. import decimals
 from ..apple.applesoft import decimaltext, functions
@@ -19,16 +19,10 @@ from ..apple.applesoft.errorcodes import (
 from ..apple.applesoft.operators import Real
 from ..apple.applesoft.real import ZERO, Number, absolute, floor
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
-
-    Function = Callable[[Any], Any]
+Function = Callable[[Any], Any]
 
 
-class Arithmetic(
-    namedtuple("Arithmetic", "name read LET NEXT INT ABS SIN COS write errors unset zero")
-):
+class Arithmetic(NamedTuple):
     """The operations on numbers that the listing uses.
 
     ``read(text, start)``: the number that begins at ``start`` and the index after it; ``LET``:
@@ -37,7 +31,6 @@ class Arithmetic(
     Applesoft errors they stand for; ``unset``: the value of a variable never assigned, a zero that
     ``is`` distinguishes from ``zero``."""
 
-    __slots__ = ()
     name: str
     read: Callable[[str, int], tuple[Any, int]]
     LET: Function
@@ -99,8 +92,8 @@ APPLESOFT = Arithmetic(
     NEXT=lambda x: (x + 1).rounded(),
     INT=_of_reals(floor),
     ABS=_of_reals(absolute),
-    SIN=_of_reals(functions.sine),
-    COS=_of_reals(functions.cosine),
+    SIN=_of_reals(lambda x: functions.sine(x)[0]),
+    COS=_of_reals(lambda x: functions.cosine(x)[0]),
     write=lambda x: decimaltext.write(x.number),
     errors={},
     unset=Real(ZERO),

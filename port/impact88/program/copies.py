@@ -38,8 +38,8 @@ def run_machine(machine: Applesoft) -> Run:
     printout, error = machine.take_output(), machine.machine.error
     return Run(
         printout,
-        error and error.message,
-        error and error.line,
+        error.message if error else None,
+        error.line if error else None,
         machine.reals(),
         machine.array("A"),
         error is None and "ZERO DETERMINANT" in printout,
@@ -69,7 +69,7 @@ class ListingCopy:
     def __init__(self, path: str) -> None:
         self.file = files.display_name(path)
         try:
-            lines = read_program(files.read_bytes(path, MAX_COPY_BYTES)).lines
+            lines = read_program(files.read_bytes(path, MAX_COPY_BYTES))
         except UserError as error:
             raise UserError(f"is not an Applesoft program: {error}", path) from None
         self._lines = [(number, spell(tokens)) for number, tokens in sorted(dict(lines).items())]

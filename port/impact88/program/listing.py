@@ -18,14 +18,11 @@ every line.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from ..apple.applesoft.arrays import Array
 from ..apple.applesoft.console import Console
 from .arithmetics import Arithmetic
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
 
 # A line of BASIC is a line of Python here, as long as it takes, and keeps BASIC's comparisons.
 # ruff: noqa: E501, E702, E741, F841, SIM201, SIM202, SIM300
@@ -52,12 +49,12 @@ class Printer:
 
 
 def impact(
-    data: Mapping[str, str], arithmetic: Arithmetic, console: Console, slot: str = "0"
+    data: Mapping[str, str], arithmetic: Arithmetic, console: Console
 ) -> dict[str, Any]:
     """Run the program: print to ``console``, read the velocities from it.
 
-    ``data`` holds the texts of lines 280, 290, 310 and of M in 350 under the listing's names;
-    ``slot`` is line 190's digit. Returns the local names, the variables among them
+    ``data`` holds the texts of lines 280, 290, 310 and of M in 350 under the listing's names.
+    Returns the local names, the variables among them
     (`run` sorts them out). Raises the arithmetic's errors, `End` after ZERO
     DETERMINANT, and `console.EndOfInput`; the variables are then in the traceback's frame.
     """
@@ -78,7 +75,7 @@ def impact(
         return arithmetic.number(data[name])
 
     def INPUT() -> Any:
-        return console.input(arithmetic.read, ZERO)
+        return console.input(arithmetic.read)
 
     PRINT = Printer(console, arithmetic.write)
     NL = "\n"
@@ -108,7 +105,7 @@ def impact(
         # 170 REM
         # 180 REM IN NEXT LINE "0" IS OUTPUT SLOT NUMBER (1 FOR PRINTER, 0 FOR MONITOR, ETC.)
         # 190 P$ = "PR# " + "0"
-        P_ = "PR# " + slot
+        P_ = "PR# " + "0"
         # 200 PRINT CHR$(140): PRINT "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ";
         PRINT << CHR(140) << NL; PRINT << "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa "
         # 210 INPUT UX,UY,WA

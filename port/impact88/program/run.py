@@ -10,23 +10,20 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from functools import cache
 from types import CodeType, FrameType, TracebackType
+from typing import Any, NamedTuple
 
 from ..apple.applesoft.console import Console
 from ..apple.applesoft.operators import Real
+from ..apple.applesoft.real import from_stored
 from ..files import packaged_text
 from ..names import check_names
 from . import listing
 from .arithmetics import ARITHMETICS, Arithmetic
 from .scene import REPLY_LINES, Scene
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
 
 BELL = "\a"
 _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
@@ -41,12 +38,18 @@ _ASSIGNED = re.compile(
 )
 """A variable that a line of BASIC assigns."""
 
-Variables = namedtuple("Variables", "reals A")
-"""The listing's variables at one time: assigned reals by name, and the array A."""
+
+class Variables(NamedTuple):
+    """The listing's variables at one time: assigned reals by name, and the array A."""
+
+    reals: dict[str, Any]
+    A: Any
+
+
 AfterLine = Callable[[int, Variables], object]
 
 
-class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
+class Run(NamedTuple):
     """The record of one run of the 1988 program.
 
     Parameters
@@ -72,7 +75,6 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     (None, '91451476e4')
     """
 
-    __slots__ = ()
     printout: str
     error: str | None
     line: int | None
@@ -89,7 +91,7 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     def floats(self) -> dict[str, float]:
         """The real variables as floats, equal to their five stored bytes."""
         values = self.reals.items()
-        return {n: float(Real.from_stored(x) if isinstance(x, str) else x) for n, x in values}
+        return {n: float(Real(from_stored(x)) if isinstance(x, str) else x) for n, x in values}
 
     def __repr__(self) -> str:
         ending = self.error or ("ZERO DETERMINANT" if self.zero_determinant else "END")
@@ -136,8 +138,8 @@ def start(
     reals, array = _variables(names, arithmetic.unset)
     return Run(
         "",
-        error and error.message,
-        error and error.line,
+        error.message if error else None,
+        error.line if error else None,
         {name: _record_value(value) for name, value in reals.items()},
         {"dims": array.sizes, "data": list(map(_record_value, array.data))} if array else None,
         zero_determinant,

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from typing import Any, Self
 
+from ..apple.applesoft.console import MAX_INPUT
 from ..decimals import is_number, to_double
 from ..errors import UserError
 from ..files import packaged_text
 from ..names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any, Self
 
 LISTING = "impact.bas"
 DATA_LINES = (280, 290, 310)
@@ -24,7 +22,6 @@ DATA_LINES = (280, 290, 310)
 REPLY_LINES = (210, 230)
 """Lines of the listing that ask for values."""
 M_LINE = 350  # the line of the listing that sets M
-MAX_LINE_LENGTH = 239  # characters of a line that the Apple keeps
 
 
 class Scene(Mapping[str, str]):
@@ -152,10 +149,10 @@ class Scene(Mapping[str, str]):
                     self.source,
                 )
         for line in (*self.typed_lines(), *self.keyboard()):
-            if len(line) > MAX_LINE_LENGTH:
+            if len(line) > MAX_INPUT:
                 raise UserError(
                     f"the line {line:.30}... has {len(line)} characters with these values; the "
-                    f"Apple takes {MAX_LINE_LENGTH}",
+                    f"Apple takes {MAX_INPUT}",
                     self.source,
                 )
 

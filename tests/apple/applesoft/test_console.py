@@ -48,7 +48,7 @@ def test_a_full_line_is_abandoned() -> None:
 )
 def test_three_values_of_a_reply(lines: list[str], asked: str) -> None:
     c, screen_texts = console(*lines)
-    (values,) = [[reply(None) for _ in range(3)] for reply in c.input(decimaltext.read, real.ZERO)]
+    (values,) = [[reply(None) for _ in range(3)] for reply in c.input(decimaltext.read)]
     assert values == [decimaltext.number(text) for text in "123"]
     assert "".join(screen_texts).replace("\0", "") == asked  # the monitor's own prompt
 
@@ -58,7 +58,7 @@ def test_control_d_speaks_to_the_disk() -> None:
     c.put("\x04PR#1\n")
     c.put("A\n")
     assert c.slot == 1
-    assert screen_texts == ["A\n"]  # the printer is the screen where there is none
+    assert screen_texts == ["A\n"]  # the printer's paper is the screen
 
 
 def test_an_array_has_the_elements_that_DIM_names() -> None:

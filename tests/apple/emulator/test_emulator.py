@@ -46,7 +46,7 @@ def test_every_statement_is_in_a_captured_program():
         token
         for part in ("programs", "corners/programs")
         for path in sorted((captures.ROOT / "golden" / part).glob("*.bas"))
-        for _, tokens in read_program(path.read_bytes()).lines
+        for _, tokens in read_program(path.read_bytes())
         for token in tokens
     }
     for word, does in zip(STATEMENTS, machine.statements, strict=True):

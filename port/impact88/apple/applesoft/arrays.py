@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from .errorcodes import ApplesoftError, illegal_quantity
 from .operators import Real
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
 
 
 def subscript(x: Any) -> int:

@@ -1,9 +1,9 @@
-"""Keyboard and screen: the character stream, INPUT, the disk system and the printer.
+"""Keyboard and screen: the character stream, INPUT and the disk system.
 
 Characters are sent without the high bit and with RETURN as newline. A line that starts with
 control-D is a command to the disk system and is not shown; of these ``PR#n`` switches the output to
-slot n, 0 being the screen. A keyboard is a function that returns the next line typed, None at the
-end.
+slot n: a printer's is the screen here, of other slots nothing is seen. A keyboard is a function
+that returns the next line typed, None at the end.
 """
 
 from __future__ import annotations
@@ -11,10 +11,7 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterator
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
+from typing import Any
 
 CONTROL_C = "\x03"
 CONTROL_D = "\x04"
@@ -31,8 +28,9 @@ MAX_INPUT = 239  # characters that INPUT keeps
 BELL_LENGTH = 248  # from here on each key rings the bell
 BUFFER_LENGTH = 256  # a line of this length is abandoned
 
-PRINTER_SLOT = 1  # the usual slot of a printer, also according to line 180 of the listing
+SHOWN_SLOTS = (0, 1)  # the screen, and the usual slot of a printer, as line 180 of the listing says
 _SURROGATES = range(0xDC80, 0xDD00)  # undecodable bytes, as Python's "surrogateescape" has them
+_CAPITALS = {n: n & 0x5F for n in range(0x60, 0x80)}
 _CURSOR_KEYS = {"I": "D", "J": "B", "K": "A", "M": "C"}
 """Keys after ESC that may be repeated -> the key with the same effect that ends the sequence."""
 
@@ -40,8 +38,8 @@ Keyboard = Callable[[], "str | None"]
 Device = Callable[[str], object]
 Read = Callable[[str, int], "tuple[Any, int]"]
 
-_SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
-_COMMAND_WORD = r" *([A-Za-z]+#?)"
+_SLOT_COMMAND = r"\x04 *[Pp][Rr] *# *([0-7])"
+_COMMAND_WORD = r"\x04 *([A-Za-z]+#?)"
 _REPLY_ENDS = ("", ":")  # a colon ends a reply as it ends a statement
 
 
@@ -78,21 +76,18 @@ class Console:
 
     ``dos``: True if a disk system handles lines that begin with control-D; ``echo``: True if typed
     lines are part of the output; ``editor``: the screen's part in typing; ``reply``: the last reply
-    to INPUT; ``ready``: returns True if the keyboard has a line now, for programs that poll it;
-    ``on_ignored_command``: called with the word of each disk command that has no effect."""
+    to INPUT; ``on_ignored_command``: called with the word of each disk command without effect."""
 
     def __init__(
         self,
         keyboard: Keyboard,
         screen: Device,
-        printer: Device | None = None,
         *,
         dos: bool = True,
         echo: bool = True,
     ) -> None:
         self.keyboard = keyboard
         self.screen = screen
-        self.printer = printer or screen
         self.dos = dos
         self.echo = echo
         self.slot = 0
@@ -101,19 +96,18 @@ class Console:
         self._keys = ""
         self._code = ord(RETURN)
         self._pressed = False
-        self.ready: Callable[[], bool] = lambda: True
         self.on_ignored_command: Callable[[str], object] = lambda word: None
         self.editor = Editor()
         self.reply: Reply | None = None
 
     def put(self, text: str) -> None:
-        """Send characters to the disk system, or to the device in the selected slot."""
+        """Send characters to the disk system, or to the selected slot."""
         if not self.dos:
             self._show(text)
             return
         for piece in text.splitlines(keepends=True):
             if self._command is None and self._line_begins and piece[0] == CONTROL_D:
-                self._command, piece = "", piece[1:]
+                self._command = ""
             self._line_begins = piece.endswith("\n")
             if self._command is None:
                 self._show(piece)
@@ -131,39 +125,36 @@ class Console:
         self.slot = slot & 7
 
     def _show(self, text: str) -> None:
-        device = {0: self.screen, PRINTER_SLOT: self.printer}.get(self.slot)
-        if device and text:
-            device(text)
+        if text and self.slot in SHOWN_SLOTS:
+            self.screen(text)
 
     def read_key(self) -> str:
         """Return one key for GET: not echoed, not converted to upper case; RETURN after each line.
         Raises EndOfInput."""
-        if not (self._keys or self._take_keys()):
-            raise EndOfInput
+        self._take_keys()
         key, self._keys = self._keys[0], self._keys[1:]
         self._code, self._pressed = ord(key), False
         return key
 
-    def _take_keys(self) -> bool:
-        """Take the keyboard's next line as keys; False if there is none."""
-        line = self.keyboard()
-        if line is not None:
-            self._keys = (
-                keyboard_codes(line) if isinstance(line, Keys) else keyboard_codes(line) + RETURN
-            )
-        return line is not None
+    def _take_keys(self, needed: bool = True) -> None:
+        """Take the keyboard's next line as keys, if none is left of the last one. Raises EndOfInput
+        if there is none that is needed."""
+        if not self._keys:
+            line = self.keyboard()
+            if line is not None:
+                self._keys = keyboard_codes(line) + RETURN * (not isinstance(line, Keys))
+            elif needed:
+                raise EndOfInput
 
     def key_code(self, *, wait: bool = False) -> int:
         """Return the byte at $C000: the code of the last key, its top bit set until it is read or
         cleared.
 
-        A key that the keyboard has ready counts as pressed now. ``wait``: wait for one, and raise
-        EndOfInput if there is none."""
+        The keyboard's next key counts as pressed now. ``wait``: raise EndOfInput if there is
+        none."""
         if not self._pressed:
-            waiting = self._keys or ((wait or self.ready()) and self._take_keys())
-            if wait and not waiting:
-                raise EndOfInput
-            if waiting:
+            self._take_keys(needed=wait)
+            if self._keys:
                 self._code, self._pressed = ord(self._keys[0]), True
         return self._code | 0x80 if self._pressed else self._code
 
@@ -176,13 +167,9 @@ class Console:
     def _typed_line(self) -> str:
         """Return the rest of a line that GET began, or the next one. Raises EndOfInput."""
         self._code, self._pressed = ord(RETURN), False
-        if self._keys:
-            typed, self._keys = self._keys.rstrip(RETURN), ""
-            return typed
-        line = self.keyboard()
-        if line is None:
-            raise EndOfInput
-        return line
+        self._take_keys()
+        typed, self._keys = self._keys.removesuffix(RETURN), ""
+        return typed
 
     def read_line(self, prompt: str = PROMPT) -> str:
         """Read a line from the keyboard, cut to the length that INPUT keeps. Raises EndOfInput."""
@@ -249,7 +236,7 @@ class Console:
         if self.echo:
             self.put(text)
 
-    def input(self, read: Read, zero: Any) -> Iterator[Reply]:
+    def input(self, read: Read) -> Iterator[Reply]:
         """INPUT of numbers: yield a Reply for each attempt, to be called once for each variable.
 
         Missing values are requested with ``??``; after text that is not a number comes
@@ -260,8 +247,7 @@ class Console:
             line = self.read_line()
             if line.startswith(CONTROL_C):
                 raise KeyboardInterrupt
-            reply = Reply(self, read, zero, line)
-            self.reply = reply
+            self.reply = reply = Reply(self, read, line)
             yield reply
             if not reply.refused:
                 break
@@ -276,10 +262,9 @@ class Reply:
     ``begun``: the number of values requested so far, which is the number of variables that the ROM
     has created; ``refused``: True after text that is not a number."""
 
-    def __init__(self, console: Console, read: Read, zero: Any, line: str) -> None:
+    def __init__(self, console: Console, read: Read, line: str) -> None:
         self._console = console
         self._read = read
-        self._zero = zero
         self._line = line
         self._position = 0
         self.begun = 0
@@ -299,7 +284,7 @@ class Reply:
                 self._line, self._position = self._console.read_line(), 0
             self.refused = not self._line
         if self.refused:
-            return self._zero if old is None else old
+            return old
         value, self._position = self._read(self._line, self._position)
         while self._line.startswith(" ", self._position):
             self._position += 1
@@ -317,10 +302,12 @@ def keyboard_codes(text: str) -> str:
 
     An undecodable byte keeps its low seven bits; other characters become ``?``, so that a
     typographic minus is refused where a number is expected."""
+    if text.isascii():
+        return text
     codes = map(ord, text)
     return "".join(chr(n & 0x7F) if n < 0x80 or n in _SURROGATES else "?" for n in codes)
 
 
 def capitals(typed: str) -> str:
     """Return a text in capital letters, as the monitor converts it: ``{`` becomes ``[``."""
-    return "".join(chr(n & 0x5F) if n >= 0x60 else chr(n) for n in map(ord, keyboard_codes(typed)))
+    return keyboard_codes(typed).translate(_CAPITALS)

@@ -8,27 +8,40 @@ an unstored value, so PRINT can show more than a variable holds.
 import re
 from functools import lru_cache
 
-from . import real
 from .errorcodes import overflow
-from .real import BIAS, ZERO, Number
+from .real import (
+    BIAS,
+    ZERO,
+    Number,
+    absolute,
+    add,
+    compare,
+    divide,
+    from_stored,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    to_integer,
+)
 
-TEN = real.integer(10)
-HALF = real.from_stored("8000000000")
-BILLION = real.from_stored("9E6E6B2800")
-NINE_DIGITS = real.from_stored("9E6E6B27FD")
+TEN = integer(10)
+HALF = from_stored("8000000000")
+BILLION = from_stored("9E6E6B2800")
+NINE_DIGITS = from_stored("9E6E6B27FD")
 """999,999,999: a larger number is divided by ten before its nine digits are taken."""
-EIGHT_DIGITS = real.from_stored("9B3EBC1FFD")
+EIGHT_DIGITS = from_stored("9B3EBC1FFD")
 """99,999,999.9: a number not above it is multiplied by ten."""
 
 
 def times_ten(x: Number) -> Number:
     """Return 10 x of x rounded: MUL10, (4x + x) doubled. Raises OVERFLOW."""
-    e, m, s = real.rounded(x)
+    e, m, s = rounded(x)
     if not e:
         return ZERO
     if e + 2 > 255:
         raise overflow()
-    e, m, s = real.add((e + 2, m, s), (e, m, s))
+    e, m, s = add((e + 2, m, s), (e, m, s))
     if e == 255:
         raise overflow()
     return e + 1, m, s
@@ -36,7 +49,7 @@ def times_ten(x: Number) -> Number:
 
 def over_ten(x: Number) -> Number:
     """Return |x| / 10 of x rounded: DIV10."""
-    return real.divide(real.absolute(x), TEN)
+    return divide(absolute(x), TEN)
 
 
 Numeral = tuple[str, str, str, str, str, int]
@@ -50,8 +63,8 @@ def scan(text: str, start: int = 0) -> Numeral:
     match = NUMERAL.match(text, start)
     assert match is not None  # the pattern also matches nothing
     sign, *numbers = (part.replace(" ", "") for part in match.groups(""))
-    integer, decimals, exponent_sign, exponent = numbers
-    return sign, integer, decimals, exponent_sign, exponent, start + len(match[0].rstrip(" "))
+    whole, decimals, exponent_sign, exponent = numbers
+    return sign, whole, decimals, exponent_sign, exponent, start + len(match[0].rstrip(" "))
 
 
 @lru_cache(maxsize=512)  # scenes and programs repeat their numbers
@@ -61,10 +74,10 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
 
     The power of ten, exponent minus decimals, is kept in one signed byte and wraps. Raises
     OVERFLOW, also for any exponent of three digits, whatever the number."""
-    sign, integer, decimals, exponent_sign, exponent, end = scan(text, start)
+    sign, whole, decimals, exponent_sign, exponent, end = scan(text, start)
     value = ZERO
-    for digit in integer + decimals:
-        value = real.add(times_ten(value), real.integer(int(digit)))
+    for digit in whole + decimals:
+        value = add(times_ten(value), integer(int(digit)))
     power = int(exponent.lstrip("0")[:3] or "0")
     if power >= 100:
         if exponent_sign != "-":
@@ -76,7 +89,7 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
         value = times_ten(value)
     for _ in range(-steps):
         value = over_ten(value)
-    return (real.negate(value) if sign == "-" else value), end
+    return (negate(value) if sign == "-" else value), end
 
 
 def is_number(text: str) -> bool:
@@ -97,19 +110,19 @@ def write(x: Number) -> str:
     extension too."""
     if not x[0]:
         return "0"
-    sign, x, d = "-" if x[2] else "", real.absolute(x), 0
+    sign, x, d = "-" if x[2] else "", absolute(x), 0
     if x[0] <= BIAS:
-        x = real.multiply(BILLION, x)
+        x = multiply(BILLION, x)
         d = -9
-    while (order := real.compare(NINE_DIGITS, x)) > 0:
+    while (order := compare(NINE_DIGITS, x)) > 0:
         x = over_ten(x)
         d += 1
     if order:
-        while real.compare(EIGHT_DIGITS, x) <= 0:
+        while compare(EIGHT_DIGITS, x) <= 0:
             x = times_ten(x)
             d -= 1
-        x = real.add(HALF, x)
-    return lay_out(sign, str(real.to_integer(x)), d)
+        x = add(HALF, x)
+    return lay_out(sign, str(to_integer(x)), d)
 
 
 def lay_out(sign: str, text: str, d: int) -> str:

@@ -3,15 +3,35 @@
 Arguments and results may have an extension, which is rounded away only where the ROM does it.
 Coefficients are stored reals in hexadecimal.
 
-Functions named ``..._and_byte`` also return the low byte that INT, called on the way, leaves in
-memory: the power of a negative number reads it, see `power_and_byte`."""
+INT leaves the low byte of its result in memory, where the power of a negative number reads it (see
+`power`). INT, and the functions that call it, take the byte left earlier and return theirs, too."""
 
 from collections.abc import Sequence
 from functools import lru_cache
 
-from . import real
 from .errorcodes import illegal_quantity, overflow
-from .real import BIAS, ZERO, Number
+from .real import (
+    BIAS,
+    INTEGER_EXPONENT,
+    LIMIT,
+    TOP,
+    ZERO,
+    Number,
+    absolute,
+    add,
+    compare,
+    divide,
+    floor,
+    from_stored,
+    integer,
+    multiply,
+    negate,
+    normalise,
+    product_exponent,
+    rounded,
+    subtract,
+    to_integer,
+)
 
 IntAndByte = tuple[Number, int]
 """A result, and the low byte of the last result of INT in its computation."""
@@ -19,7 +39,7 @@ IntAndByte = tuple[Number, int]
 
 def stored_reals(text: str) -> tuple[Number, ...]:
     """Return constants from their hexadecimal bytes, separated by blanks."""
-    return tuple(real.from_stored(word) for word in text.split())
+    return tuple(from_stored(word) for word in text.split())
 
 
 LOG_COEFFICIENTS = stored_reals("7F5E56CB79 80139B0B64 8076389316 8238AA3B20")
@@ -31,41 +51,40 @@ ATN_COEFFICIENTS = stored_reals(
     "76B383BDD3 791EF4A6F5 7B83FCB010 7C0C1F67CA 7CDE53CBC1 7D1464704C"
     " 7DB7EA517A 7D6330887E 7E9244993A 7E4CCC91C7 7FAAAAAA13 8100000000"
 )
-SQRT_HALF = real.from_stored("803504F334")
-SQRT_TWO = real.from_stored("813504F334")
-MINUS_HALF = real.from_stored("8080000000")
-LN_TWO = real.from_stored("80317217F8")
-LOG2_E = real.from_stored("8138AA3B29")
-TWO_PI = real.from_stored("83490FDAA2")
-HALF_PI = real.from_stored("81490FDAA2")
-QUARTER = real.from_stored("7F00000000")
-HALF = real.from_stored("8000000000")
-RND_FACTOR = real.from_stored("9835447A68")
-RND_ADDEND = real.from_stored("6828B14620")
-FIRST_SEED = real.from_stored("804FC75258")  # RND's seed after power-on
-ONE = real.integer(1)
+SQRT_HALF = from_stored("803504F334")
+SQRT_TWO = from_stored("813504F334")
+MINUS_HALF = from_stored("8080000000")
+LN_TWO = from_stored("80317217F8")
+LOG2_E = from_stored("8138AA3B29")
+TWO_PI = from_stored("83490FDAA2")
+HALF_PI = from_stored("81490FDAA2")
+QUARTER = from_stored("7F00000000")
+HALF = from_stored("8000000000")
+RND_FACTOR = from_stored("9835447A68")
+RND_ADDEND = from_stored("6828B14620")
+ONE = integer(1)
 EXP_ROUNDING = 0x50  # added by EXP to the extension of x / ln 2 before splitting it
 
 
 def polynomial(coefficients: Sequence[Number], x: Number) -> Number:
     """Return c0 x^n + ... + cn by Horner's rule; x is rounded, the sum keeps its extension."""
-    x = real.rounded(x)
-    r = real.multiply(coefficients[0], x)
+    x = rounded(x)
+    r = multiply(coefficients[0], x)
     for c in coefficients[1:-1]:
-        r = real.multiply(x, real.add(c, r))
-    return real.add(coefficients[-1], r)
+        r = multiply(x, add(c, r))
+    return add(coefficients[-1], r)
 
 
 def odd_polynomial(coefficients: Sequence[Number], x: Number) -> Number:
     """Return x p(x^2), p being the polynomial of ``coefficients``."""
-    x = real.rounded(x)
-    return real.multiply(x, polynomial(coefficients, real.multiply(x, x)))
+    x = rounded(x)
+    return multiply(x, polynomial(coefficients, multiply(x, x)))
 
 
 def sign(x: Number) -> Number:
     """SGN: -1, 0 or 1."""
     e, _, s = x
-    return real.integer(-1 if s else 1) if e else ZERO
+    return integer(-1 if s else 1) if e else ZERO
 
 
 def logarithm(x: Number) -> Number:
@@ -74,29 +93,26 @@ def logarithm(x: Number) -> Number:
     if s or not e:
         raise illegal_quantity()
     f = (BIAS, m, 0)
-    f = real.subtract(ONE, real.divide(SQRT_TWO, real.add(SQRT_HALF, f)))
-    f = real.add(MINUS_HALF, odd_polynomial(LOG_COEFFICIENTS, f))
-    return real.multiply(LN_TWO, real.add(f, real.integer(e - BIAS)))
+    f = subtract(ONE, divide(SQRT_TWO, add(SQRT_HALF, f)))
+    f = add(MINUS_HALF, odd_polynomial(LOG_COEFFICIENTS, f))
+    return multiply(LN_TWO, add(f, integer(e - BIAS)))
 
 
 def integer_part(x: Number, left: int = 0) -> IntAndByte:
     """INT, and the low byte of the result, which the ROM leaves in memory; for a number of 32 or
     more bits before the point the ROM does not compute it, and the byte ``left`` there earlier
     stays."""
-    integral = real.floor(x)
-    return integral, (real.to_integer(integral) & 0xFF if x[0] < real.INTEGER_EXPONENT else left)
+    integral = floor(x)
+    return integral, (to_integer(integral) & 0xFF if x[0] < INTEGER_EXPONENT else left)
 
 
-def exponential(x: Number) -> Number:
-    """EXP: e to the power x. Raises OVERFLOW; underflows to zero."""
-    return exponential_and_byte(x)[0]
+def exponential(x: Number, left: int = 0) -> IntAndByte:
+    """EXP: e to the power x. Raises OVERFLOW; underflows to zero.
 
-
-def exponential_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """EXP, and the byte of INT, which splits x / ln 2 unless its exponent shows it out of range."""
+    INT splits x / ln 2 unless its exponent shows it out of range."""
     e, m, s = turns = _over_ln_two(x)
     if e < BIAS + 8:
-        doublings = real.to_integer((e, m & ~0xFF, s))
+        doublings = to_integer((e, m & ~0xFF, s))
         exponent, left = doublings + 129 & 0xFF, doublings & 0xFF
     else:
         doublings = exponent = 0
@@ -104,131 +120,104 @@ def exponential_and_byte(x: Number, left: int = 0) -> IntAndByte:
         raise overflow()
     if exponent <= 1:
         return ZERO, left
-    fraction = real.negate(real.subtract(real.integer(doublings), turns))
+    fraction = negate(subtract(integer(doublings), turns))
     e, m, _ = polynomial(EXP_COEFFICIENTS, fraction)
-    e = real.product_exponent(exponent - 1, e)
+    e = product_exponent(exponent - 1, e)
     return ((e, m, 0) if e else ZERO), left
 
 
 def _over_ln_two(x: Number) -> Number:
     """Return x / ln 2 with `EXP_ROUNDING` added to its extension."""
-    e, m, s = real.multiply(LOG2_E, x)
+    e, m, s = multiply(LOG2_E, x)
     if e:
         m += EXP_ROUNDING
-        if m >= real.LIMIT:
+        if m >= LIMIT:
             # the 32-bit mantissa overflows to 80000000, and the extension keeps its sum
-            m = real.TOP | m & 0xFF
+            m = TOP | m & 0xFF
             e += 1
     return e, m, s
 
 
-def power(left: Number, right: Number) -> Number:
+def power(left: Number, right: Number, byte: int = 0) -> IntAndByte:
     """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X.
 
-    Raises OVERFLOW, and ILLEGAL QUANTITY for a negative left with a fractional right. A negative
-    left to a power of 2^31 or more is positive, as if INT had not been used before."""
-    return power_and_byte(left, right)[0]
-
-
-def power_and_byte(left: Number, right: Number, byte: int = 0) -> IntAndByte:
-    """left ^ right, and the byte of INT.
-
-    For a negative left, the byte that INT (right) leaves decides if right is odd; from 2^31 on it
-    is the byte of an earlier INT."""
+    Raises OVERFLOW, and ILLEGAL QUANTITY for a negative left with a fractional right. For a
+    negative left, the byte that INT (right) leaves decides if right is odd; from 2^31 on it is the
+    byte of an earlier INT."""
     if not right[0]:
-        return exponential_and_byte(ZERO)
-    left = real.rounded(left)
+        return exponential(ZERO)
+    left = rounded(left)
     if not left[0]:
         return ZERO, byte
-    exponent = real.rounded(right)
+    exponent = rounded(right)
     odd = False
     if left[2]:
         integral, byte = integer_part(exponent, byte)
-        if real.compare(exponent, integral):
+        if compare(exponent, integral):
             raise illegal_quantity()
         odd = bool(byte & 1)
-        left = real.negate(left)
-    result, byte = exponential_and_byte(real.multiply(exponent, logarithm(left)), byte)
-    return (real.negate(result) if odd else result), byte
+        left = negate(left)
+    result, byte = exponential(multiply(exponent, logarithm(left)), byte)
+    return (negate(result) if odd else result), byte
 
 
-def square_root(x: Number) -> Number:
+def square_root(x: Number, left: int = 0) -> IntAndByte:
     """SQR, as (x rounded) ^ 0.5. Raises ILLEGAL QUANTITY for a negative x."""
-    return power(x, HALF)
-
-
-def square_root_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """SQR, and the byte of INT."""
-    return power_and_byte(x, HALF, left)
+    return power(x, HALF, left)
 
 
 @lru_cache(maxsize=64)  # programs use the sine of the same few angles repeatedly
-def _sine(x: Number) -> tuple[Number, bool, Number, Number]:
-    """Return the sine, two values for TAN (the quadrant flag, and the reduced argument, a fraction
-    of a turn in -1/4 ... 1/4, rounded), and the argument of INT, x in turns."""
-    turns = f = real.rounded(real.divide(x, TWO_PI))
-    f = real.subtract(QUARTER, real.subtract(f, real.floor(f)))
+def _sine(x: Number, left: int) -> tuple[Number, int, bool, Number]:
+    """Return the sine, the byte of INT, and two values for TAN: the quadrant flag, and the reduced
+    argument, a fraction of a turn in -1/4 ... 1/4, rounded."""
+    f = rounded(divide(x, TWO_PI))
+    whole_turns, byte = integer_part(f, left)
+    f = subtract(QUARTER, subtract(f, whole_turns))
     beyond_first_quarter = f[2]
     flag = False
     if beyond_first_quarter:
-        f = real.add(HALF, f)
+        f = add(HALF, f)
         if not f[2]:
-            f = real.negate(f)
+            f = negate(f)
             flag = True
     else:
-        f = real.negate(f)
-    f = real.add(QUARTER, f)
+        f = negate(f)
+    f = add(QUARTER, f)
     if beyond_first_quarter:
-        f = real.negate(f)
-    f = real.rounded(f)
-    return odd_polynomial(SIN_COEFFICIENTS, f), flag, f, turns
+        f = negate(f)
+    f = rounded(f)
+    return odd_polynomial(SIN_COEFFICIENTS, f), byte, flag, f
 
 
-def sine(x: Number) -> Number:
+def sine(x: Number, left: int = 0) -> IntAndByte:
     """SIN of x radians."""
-    return _sine(x)[0]
+    return _sine(x, left)[:2]
 
 
-def cosine(x: Number) -> Number:
+def cosine(x: Number, left: int = 0) -> IntAndByte:
     """COS of x radians, computed as SIN (pi/2 + x)."""
-    return _sine(real.add(HALF_PI, x))[0]
+    return sine(add(HALF_PI, x), left)
 
 
-def tangent(x: Number) -> Number:
+def tangent(x: Number, left: int = 0) -> IntAndByte:
     """TAN of x radians: the sine divided by the cosine of the same reduced argument."""
-    of_sine, flag, remainder, _ = _sine(real.rounded(x))
-    f = real.add(QUARTER, real.negate(real.absolute(remainder)))
+    of_sine, byte, flag, remainder = _sine(rounded(x), left)
+    f = add(QUARTER, negate(absolute(remainder)))
     if flag:
-        f = real.negate(f)
-    return real.divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
-
-
-def sine_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """SIN, and the byte of INT."""
-    result, _, _, turns = _sine(x)
-    return result, integer_part(turns, left)[1]
-
-
-def cosine_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """COS, and the byte of INT."""
-    return sine_and_byte(real.add(HALF_PI, x), left)
-
-
-def tangent_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """TAN, and the byte of INT."""
-    return tangent(x), sine_and_byte(real.rounded(x), left)[1]
+        f = negate(f)
+    return divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f)), byte
 
 
 def arc_tangent(x: Number) -> Number:
     """ATN in radians, -pi/2 ... pi/2."""
-    f = real.absolute(x)
+    f = absolute(x)
     is_inverted = f[0] > BIAS
     if is_inverted:
-        f = real.divide(ONE, f)
+        f = divide(ONE, f)
     f = odd_polynomial(ATN_COEFFICIENTS, f)
     if is_inverted:
-        f = real.subtract(HALF_PI, f)
-    return real.negate(f) if x[2] else f
+        f = subtract(HALF_PI, f)
+    return negate(f) if x[2] else f
 
 
 def random(x: Number, seed: Number) -> Number:
@@ -237,6 +226,6 @@ def random(x: Number, seed: Number) -> Number:
     A negative x starts a sequence. The bytes are shuffled and the exponent discarded."""
     if not x[0]:
         return seed
-    e, m, _ = x if x[2] else real.add(RND_ADDEND, real.multiply(RND_FACTOR, seed))
+    e, m, _ = x if x[2] else add(RND_ADDEND, multiply(RND_FACTOR, seed))
     b1, b2, b3, b4 = (m >> 8).to_bytes(4, "big")
-    return real.rounded(real.normalise(BIAS, int.from_bytes((b4, b2, b3, b1, e), "big"), 0))
+    return rounded(normalise(BIAS, int.from_bytes((b4, b2, b3, b1, e), "big"), 0))

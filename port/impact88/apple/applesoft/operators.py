@@ -8,9 +8,20 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
-from . import real
 from .functions import power
-from .real import BIAS, Number, compare, from_stored, integer, rounded, to_stored
+from .real import (
+    BIAS,
+    Number,
+    add,
+    compare,
+    divide,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    subtract,
+    to_stored,
+)
 
 
 def _binary(rule: Callable[[Number, Number], Number]) -> tuple[Callable[..., Real], ...]:
@@ -49,11 +60,6 @@ class Real:
     def __init__(self, number: Number) -> None:
         self.number = number
 
-    @classmethod
-    def from_stored(cls, stored: bytes | str) -> Real:
-        """Return the real of five stored bytes, see `real.from_stored`."""
-        return cls(from_stored(stored))
-
     def to_bytes(self) -> bytes:
         """Return the five bytes that a variable stores, see `real.to_stored`."""
         return to_stored(self.number)
@@ -63,11 +69,6 @@ class Real:
         number = self.number
         return Real(rounded(number)) if number[1] & 0xFF else self
 
-    @property
-    def extension(self) -> int:
-        """The eight bits below the mantissa, which storing rounds away."""
-        return self.number[1] & 0xFF
-
     def __float__(self) -> float:
         """Return the exact value: 40 bits and this exponent range fit a double."""
         e, m, s = self.number
@@ -75,26 +76,23 @@ class Real:
         return -size if s else size
 
     def __repr__(self) -> str:
-        return f"Real({float(self)!r}, {self.to_bytes().hex()}:{self.extension:02x})"
+        return f"Real({float(self)!r}, {self.to_bytes().hex()}:{self.number[1] & 0xFF:02x})"
 
     def __neg__(self) -> Real:
-        return Real(real.negate(self.number))
+        return Real(negate(self.number))
 
-    __add__, __radd__ = _binary(real.add)
-    __sub__, __rsub__ = _binary(real.subtract)
-    __mul__, __rmul__ = _binary(real.multiply)
-    __truediv__, __rtruediv__ = _binary(real.divide)
-    __pow__ = _binary(power)[0]
+    __add__, __radd__ = _binary(add)
+    __sub__, __rsub__ = _binary(subtract)
+    __mul__, __rmul__ = _binary(multiply)
+    __truediv__, __rtruediv__ = _binary(divide)
+    __pow__ = _binary(lambda left, right: power(left, right)[0])[0]
     __lt__, __gt__ = _comparison(operator.lt), _comparison(operator.gt)
     __le__, __ge__ = _comparison(operator.le), _comparison(operator.ge)
     __eq__, __ne__ = _comparison(operator.eq), _comparison(operator.ne)
-    __hash__ = None  # type: ignore[assignment]
 
 
-def _number(operand: Real | int) -> Number:
-    """Return the number of a real or whole number. Raises TypeError."""
+def _number(operand: object) -> Number:
+    """Return a whole number's number. Raises TypeError for any other object."""
     if operand.__class__ is int:
         return integer(operand)
-    if isinstance(operand, Real):
-        return operand.number
     raise TypeError(f"an Applesoft real takes whole numbers and reals, not {operand!r}")

@@ -21,6 +21,8 @@ unit when exponents are equal), `_multiply_with_defect` (double zero byte), and 
 missing carry (`compare`).
 """
 
+from functools import lru_cache
+
 from .errorcodes import division_by_zero, overflow
 
 Number = tuple[int, int, int]
@@ -261,27 +263,17 @@ def floor(x: Number) -> Number:
 # --- whole numbers and stored bytes -----------------------------------------------------------
 
 
-def _from_integer(n: int) -> Number:
+@lru_cache(maxsize=512)  # mostly digits, subscripts and the constants of formulas
+def integer(n: int) -> Number:
+    """A whole number of at most 32 bits, exact."""
     size = abs(n)
     length = size.bit_length()
-    if length > 32:
-        raise ValueError(f"{n} has more than 32 bits; write it as decimal text")
     return (BIAS + length, size << 40 - length, int(n < 0)) if n else ZERO
-
-
-_SMALL = {n: _from_integer(n) for n in range(-16, 129)}
-
-
-def integer(n: int) -> Number:
-    """A whole number of at most 32 bits, exact. Raises ValueError for a larger one."""
-    return _SMALL.get(n) or _from_integer(n)
 
 
 def from_stored(stored: bytes | str, extension: int = 0) -> Number:
     """The value of five stored bytes (or ten hexadecimal digits), with an extension byte."""
     data = bytes.fromhex(stored) if isinstance(stored, str) else stored
-    if len(data) != 5:
-        raise ValueError(f"a stored real has five bytes, not {len(data)}")
     e = data[0]
     if e == 0:
         return ZERO

@@ -6,7 +6,15 @@ from functools import partial
 from math import prod
 from typing import Any
 
-from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyboard_codes
+from ..applesoft.console import (
+    MAX_INPUT,
+    Device,
+    EndOfInput,
+    Keyboard,
+    Keys,
+    capitals,
+    keyboard_codes,
+)
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import to_stored
 from .faults import Fault, Restart
@@ -14,7 +22,7 @@ from .machine import Machine
 from .memory import AFTER_TYPING, INPUT_BUFFER, INTEGER, MARKS, STRING
 from .memory import PROMPT as PROMPT_BYTE
 from .programfile import read_program
-from .tokens import MAX_INPUT, detokenise, split_number, tokenise
+from .tokens import detokenise, split_number, tokenise
 
 PROMPT = "]"
 AT_PROMPT = ord(PROMPT) | 0x80
@@ -30,8 +38,9 @@ class Applesoft:
     ----------
     keyboard : callable, optional
         Returns the next line after those queued by `feed`, None at the end.
-    screen, printer : callable, optional
-        Called with the characters sent to them. Without a screen, `take_output` returns them.
+    screen : callable, optional
+        Called with the characters sent to it, or to a printer in slot 1. Without it, `take_output`
+        returns them.
     dos : bool, default False
         True if a disk system handles lines that begin with control-D.
     echo : bool, default True
@@ -55,7 +64,6 @@ class Applesoft:
         self,
         keyboard: Keyboard | None = None,
         screen: Device | None = None,
-        printer: Device | None = None,
         *,
         dos: bool = False,
         echo: bool = True,
@@ -65,7 +73,7 @@ class Applesoft:
         self._keyboard = keyboard
         self._output: list[str] = []
         device = screen or self._output.append
-        self.machine = Machine(self._next_line, device, printer, blanks, dos=dos, echo=echo)
+        self.machine = Machine(self._next_line, device, blanks, dos=dos, echo=echo)
 
     def _next_line(self) -> str | None:
         if self._queue:
@@ -141,7 +149,7 @@ class Applesoft:
         ApplesoftError
             OUT OF MEMORY; the present program is kept.
         """
-        self.machine.load(read_program(program).lines)
+        self.machine.load(read_program(program))
 
     def type_line(self, text: str) -> ApplesoftError | None:
         """Enter a line typed at the prompt, small letters as capitals.

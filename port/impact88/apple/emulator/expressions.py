@@ -2,29 +2,39 @@
 
 Like the ROM, this module reads and computes in one pass, with the same order of events and errors,
 and with the 6502's stack pointer at a routine's entry, ``sp``. A value is the content of the
-accumulator, a triple of `real`. Where the ROM takes a string for a number, so does this module:
-most functions are computed before the type of the argument is checked; CHR$, PEEK, FRE and POS
-never check it."""
+accumulator, a triple of `applesoft.real`. Where the ROM takes a string for a number, so does this
+module: most functions are computed before the type of the argument is checked; CHR$, PEEK, FRE and
+POS never check it."""
 
 from collections.abc import Callable
 
-from ..applesoft import decimaltext, functions, real
+from ..applesoft import decimaltext, functions
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
-from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
+from ..applesoft.real import (
+    INTEGER_EXPONENT,
+    ZERO,
+    Number,
+    absolute,
+    add,
+    compare,
+    divide,
+    integer,
+    multiply,
+    negate,
+    rounded,
+    subtract,
+    to_integer,
+)
 from .faults import Fault, call_at, fault_if, with_stack
-from .memory import EMPTY, FUNCTION, INTEGER, MINUS, PLUS, STRING, SUBFLG_SIMPLE
+from .memory import DIGITS, FUNCTION, LETTERS, MINUS, PLUS, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
-from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
+from .variables import LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
 MIN_STACK = 59  # CHKMEM: the lowest stack pointer for a formula
 PENDING = 12  # bytes on the stack for an operator that waits for its right operand
 DIGITS_COUNTED = 36  # the byte that FOUT leaves in VARPNT
 LARGEST_ADDRESS = 0x90  # GETADR: the largest exponent of an address
 POINT = ord(".")
-DIGIT_0 = ord("0")
-DIGIT_9 = ord("9")
-LETTER_A = ord("A")
-LETTER_Z = ord("Z")
 FN = TOKENS["FN"]
 NOT_TOKEN = TOKENS["NOT"]
 OR_TOKEN = TOKENS["OR"]
@@ -45,7 +55,7 @@ PRECEDENCES = (0x79, 0x79, 0x7B, 0x7B, 0x7D, 0x50, 0x46, 0x7F, 0x7F, 0x64, 0)  #
 RELATIONAL = PRECEDENCES[RELATION]
 ONE = integer(1)
 ARITHMETIC: tuple[Callable[[Number, Number], Number], ...]
-ARITHMETIC = (real.add, real.subtract, real.multiply, real.divide)
+ARITHMETIC = (add, subtract, multiply, divide)
 ERROR_DEPTHS = (3, 3, 5, 3, 6)
 """Bytes below a level's entry at which + - * / and ^ detect their errors."""
 SIGNS = (1, 2, 4)  # CPRTYP's bits for >, = and <
@@ -53,17 +63,17 @@ TRUTHS = {1: 4, 0: 2, -1: 1}  # CPRMASK's bits by the result of `compare` for th
 
 NUMERIC: dict[str, Callable[[Number], Number]] = {
     "SGN": functions.sign,
-    "ABS": real.absolute,
+    "ABS": absolute,
     "LOG": functions.logarithm,
     "ATN": functions.arc_tangent,
 }
 TAKING_INT: dict[str, Callable[[Number, int], functions.IntAndByte]] = {
     "INT": functions.integer_part,
-    "SQR": functions.square_root_and_byte,
-    "EXP": functions.exponential_and_byte,
-    "COS": functions.cosine_and_byte,
-    "SIN": functions.sine_and_byte,
-    "TAN": functions.tangent_and_byte,
+    "SQR": functions.square_root,
+    "EXP": functions.exponential,
+    "COS": functions.cosine,
+    "SIN": functions.sine,
+    "TAN": functions.tangent,
 }
 """INT, and functions that use it: the byte they leave in CHARAC affects a later ^."""
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
@@ -201,9 +211,9 @@ class Expressions(Variables):
                             order = compare(left, fac)
                         fac = ONE if relation >> 1 & TRUTHS[order] else ZERO
                     elif waiting == POWER:
-                        fac, self.charac = functions.power_and_byte(left, fac, self.charac)
+                        fac, self.charac = functions.power(left, fac, self.charac)
                     elif waiting == NEGATE:
-                        fac = real.negate(fac)
+                        fac = negate(fac)
                     elif waiting == NOT:
                         fac = ZERO if fac[0] else ONE
                     elif waiting == OR:
@@ -236,12 +246,15 @@ class Expressions(Variables):
             pos += 1
             byte = ram[pos]
         self.valtyp = 0
-        if LETTER_A <= byte <= LETTER_Z:
-            name, self.txtptr, subscripts = self.names.get(pos) or self.name_at(pos)
-            return self._variable(sp - 5, name, subscripts)
         self.txtptr = pos
+        if byte in LETTERS:
+            address = self.variable(sp - 5, make=False)
+            if self.valtyp:
+                e, m, s = self.fac
+                return e, m & 0xFFFF000000 | (address & 0xFF) << 16 | address & 0xFF00, s
+            return self.integer_value(address) if self.inttyp else self.value(address)
         try:
-            if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
+            if byte in DIGITS or byte == POINT:
                 return self.constant()
             if byte == QUOTE:
                 return self.literal(pos + 1)
@@ -263,26 +276,6 @@ class Expressions(Variables):
         fac = self.formula(sp - 2)
         self.expect(CLOSE, sp)
         return fac
-
-    def _variable(self, sp: int, name: int, subscripts: bool) -> Number:
-        """FRM_VARIABLE: return the value of a variable or an array element."""
-        kind = name & INTEGER
-        self.inttyp = kind == INTEGER
-        if subscripts and not self.subflg:
-            self.valtyp = IS_STRING if kind == STRING else 0
-            address = self.array_element(name, sp)
-        else:
-            if self.inttyp and self.subflg:
-                raise Fault("SYNTAX", sp)
-            self.subflg = 0
-            address = self.simple.get(name, EMPTY)
-            if address != EMPTY:
-                self.varpnt = address
-        if kind == STRING:
-            self.valtyp = IS_STRING
-            e, m, s = self.fac
-            return e, m & 0xFFFF000000 | (address & 0xFF) << 16 | address & 0xFF00, s
-        return self.integer_value(address) if kind else self.value(address)
 
     def function_name(self, sp: int) -> int:
         """FNC: return the address of the function named after FN, created if necessary. A name with

@@ -9,7 +9,7 @@ from ..applesoft.console import CONTROL_C, RETURN
 from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
 from .faults import Fault, call_at, fault_if
-from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS, PROMPT
+from .memory import DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS, PROMPT
 from .programfile import INDENT, WRAP_COLUMN
 from .screen import HEIGHT, WIDTH
 from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, list_text
@@ -118,7 +118,7 @@ class InputOutput(Expressions):
         self.screen.mask = mask
 
     def list_(self) -> None:
-        sp, ram = self.sp - 2, self.ram
+        sp = self.sp - 2
         if self.character() not in (*DIGITS, 0, COLON, MINUS, COMMA):
             return
         last = self.line_number(sp - 2)
@@ -130,29 +130,23 @@ class InputOutput(Expressions):
             last = self.line_number(sp - 2)
             if not self.at_end():
                 return
-        for _ in range(ADDRESSES):  # addresses poked may lead in a circle
-            if not ram[line + 1]:
-                break
+        for number, tokens in self.lines(line):
             self.pause()
             self.put("\n")
-            number = self.word(line + 2)
             if number > (last or LAST_NUMBER):
                 break
             self._keep_place(HEADER - 1)
             self.show_number(integer(number))
             self.put(" ")
-            for place, byte in enumerate(ram[line + HEADER : ram.index(0, line + HEADER)], HEADER):
+            for place, byte in enumerate(tokens, HEADER):
                 if byte >= FIRST:
                     self._keep_place(place)
                 if byte == BREAK_CODE:
                     self.ignore("LIST of the byte 255 prints text of the ROM there, nothing here")
-                self.put(
-                    list_text(byte) if self.screen.shows else self._apply_mask(list_text(byte))
-                )
+                self.put(self._apply_mask(list_text(byte)))
                 if self.screen.column >= WRAP_COLUMN:
                     self.put("\n")
                     self.screen.column = INDENT
-            line = self.word(line)
         self.put("\n")
 
     def _keep_place(self, place: int) -> None:

@@ -10,7 +10,7 @@ memory a line is the address of the next one, its number, its tokens and a zero;
 ends the program. LIST and GOTO follow the addresses; a running program continues with the bytes
 after a line's zero."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -59,6 +59,7 @@ STEP = TOKENS["STEP"]
 GOSUB = TOKENS["GOSUB"]
 GOTO = TOKENS["GOTO"]
 EQUAL = TOKENS["="]
+WITHOUT_OPERANDS = ("CLEAR", "CONT", "END", "NEW", "POP", "RETURN", "STOP")
 EVERY_BYTE = bytes(range(256))
 STORED_BYTES = {
     "SPEED=": (0xF1, bytes(-n & 0xFF for n in EVERY_BYTE)),
@@ -84,9 +85,6 @@ class Frame(NamedTuple):
     limit: Number = ZERO
     step: Number = ZERO
     sign: int = 0
-
-
-NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
 
 
 class Machine(InputOutput):
@@ -119,18 +117,8 @@ class Machine(InputOutput):
             "PR#": lambda: self.console.select(self.byte(self.sp - 4)),
             "IN#": lambda: self.byte(self.sp - 4),  # there is no input but the keyboard
         }
-        without_operands: dict[str, Callable[[], object]] = {
-            "CLEAR": self.clear,
-            "CONT": self.cont,
-            "END": self.end,
-            "NEW": self.new,
-            "POP": self.subroutine,
-            "RETURN": self.return_,
-            "STOP": partial(self.end, BREAK),
-        }
-        statements |= {
-            word: partial(self._run_if_alone, routine) for word, routine in without_operands.items()
-        }
+        for word in WITHOUT_OPERANDS:
+            statements[word] = partial(self._run_if_alone, statements[word])
         self.statements = list(statements.values())
         self.clear_stack()
         self.text_changed()
@@ -281,8 +269,9 @@ class Machine(InputOutput):
         place = self._address(self.sp - 4)
         bell, normal = partial(self.put, "\a"), partial(self.set_mode, NORMAL)
         routines: dict[int, Callable[[], object]] = {
+            **self.screen.routines,
             0xF328: self.forget_error,
-            0xD66C: self.clear,
+            0xD66C: self.clear_,
             0xD683: self.clear_stack,
             0xFD8E: partial(self.put, "\n"),
             0xFF3A: bell,
@@ -299,7 +288,7 @@ class Machine(InputOutput):
         }
         if place in routines:
             routines[place]()
-        elif not self.screen.call(place) and self.peek(place) != 0x60:
+        elif self.peek(place) != 0x60:
             self.refuse(f"CALL {place}")
 
     def himem_(self) -> None:
@@ -311,7 +300,7 @@ class Machine(InputOutput):
         place = self._address(self.sp - 4)
         fault_if(not self.vartab <= place < self.memsiz, "OUT OF MEMORY", self.sp - 2)
         self.vartab = place
-        self.clear()
+        self.clear_()
 
     def _run_if_alone(self, does: Callable[[], object]) -> None:
         """Run a statement without operands; if anything follows it does nothing."""
@@ -343,9 +332,9 @@ class Machine(InputOutput):
     def set_pointers(self) -> None:
         """SETPTRS: set TXTPTR before the program; and CLEARC: clear variables and restore DATA."""
         self.txtptr = self.txttab - 1
-        self.clear()
+        self.clear_()
 
-    def clear(self) -> None:
+    def clear_(self) -> None:
         self.fretop = self.memsiz
         self.arytab = self.strend = self.vartab
         self.simple.clear()
@@ -419,8 +408,8 @@ class Machine(InputOutput):
         else:
             self.forpnt = self.variable(self.sp - 4)
         while True:
-            frame = frames[-1] if frames else NO_FRAME
-            if frame.sp != self.sp or frame.variable != self.forpnt:
+            frame = frames[-1] if frames else None
+            if frame is None or frame.sp != self.sp or frame.variable != self.forpnt:
                 n, sp = self._find_loop()
                 fault_if(n < 0, "NEXT WITHOUT FOR", self.sp - 2)
                 self.set_stack(sp)
@@ -463,12 +452,12 @@ class Machine(InputOutput):
         self.sp = frame.sp
 
     def return_(self) -> None:
-        frame = self.subroutine()
+        frame = self.pop_()
         self.curlin, self.txtptr = frame.line, frame.text
         self.data_()
 
-    def subroutine(self) -> Frame:
-        """Pop the innermost GOSUB and return its frame.
+    def pop_(self) -> Frame:
+        """POP: remove the innermost GOSUB and return its frame.
 
         Loops inside it are dropped: the ROM searches for a loop whose variable is at $xxFF, xx
         being left from the last assignment, and fails if there is one."""
@@ -534,10 +523,10 @@ class Machine(InputOutput):
         if self.at_end():
             self.set_pointers()
         else:
-            self.clear()
+            self.clear_()
             self.goto_()
 
-    def end(self, message: bytes = b"") -> None:
+    def end_(self, message: bytes = b"") -> None:
         """END, or STOP with a message: end the program; CONT continues here, unless at the
         prompt."""
         if self.curlin < DIRECT:
@@ -546,11 +535,14 @@ class Machine(InputOutput):
             self.message(message)
         raise Restart
 
+    def stop_(self) -> None:
+        self.end_(BREAK)
+
     def break_(self) -> None:
         """Control-C: an error under ONERR, otherwise like STOP."""
         fault_if(self.errflg & 0x80, "SYNTAX", self.sp - 4, BREAK_CODE)
         self.broken = True
-        self.end(BREAK)
+        self.end_(BREAK)
 
     def message(self, text: bytes) -> None:
         """Show a message, and the line number in a program."""
@@ -559,18 +551,9 @@ class Machine(InputOutput):
             self.show_message(IN)
             self.show_number(integer(self.curlin))
 
-    def cont(self) -> None:
+    def cont_(self) -> None:
         fault_if(not self.oldtext >> 8, "CAN'T CONTINUE", self.sp - 2)
         self.txtptr, self.curlin = self.oldtext, self.oldlin
-
-    def lines(self) -> Iterator[tuple[int, bytes]]:
-        """Yield number and tokens of each line, following the addresses."""
-        ram, address = self.ram, self.txttab
-        addresses: set[int] = set()
-        while ram[address + 1] and address not in addresses and address < ROM:
-            addresses.add(address)
-            yield self.word(address + 2), bytes(ram[address + 4 : ram.index(0, address + 4)])
-            address = self.word(address)
 
     def load(self, lines: Iterable[tuple[int, bytes]]) -> None:
         """Replace the program by lines, in their order. Raises OUT OF MEMORY without changing
@@ -617,7 +600,7 @@ class Machine(InputOutput):
             address = following
         self.prgend = self.vartab
 
-    def new(self) -> None:
+    def new_(self) -> None:
         """NEW: clear the program. If a program does it, it ends, and CONT continues there."""
         self.lock = 0
         self.ram[self.txttab : self.txttab + 2] = END_MARK

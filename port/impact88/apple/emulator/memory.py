@@ -7,7 +7,7 @@ of the program changes; page 2 is never cached.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from ..applesoft import decimaltext
 from ..applesoft.console import Console, Device, Keyboard
@@ -40,28 +40,18 @@ MAX_NOTES = 8  # different requests for missing features that are noted
 MORE_NOTES = "more of the kind"
 _PADDING = 0x200  # zeros after the last address, where text running to the end of memory stops
 
-_PAGE_ZERO = """14 subflg 52 temppt 53 lastpt 67 txttab+ 69 vartab+ 6B arytab+ 6D strend+ 6F fretop+
-73 memsiz+ 75 curlin+ 77 oldlin+ 79 oldtext+ 7B datlin+ 7D datptr+ 83 varpnt+ 85 forpnt+ AF prgend+
-B8 txtptr+ D6 lock D8 errflg DA errlin+ DC errpos+ DE errnum DF errstk F2 trcflg F3 flash
-F4 txtpsv+ F6 cursv+ F8 remstk"""
-POINTERS: dict[int, tuple[str, int, int]] = {}
-"""Address on page 0 -> attribute, shift of its byte, and mask of its other byte."""
-for _address, _name, _word in re.findall(r"(\w+) (\w+)(\+?)", _PAGE_ZERO):
-    POINTERS[int(_address, 16)] = _name, 0, 0xFF00 if _word else 0
+_PAGE_ZERO = """14 subflg 20 screen.left 21 screen.width 22 screen.top 23 screen.bottom
+24 screen.column 25 screen.row 28 screen.address+ 32 screen.mask 52 temppt 53 lastpt 67 txttab+
+69 vartab+ 6B arytab+ 6D strend+ 6F fretop+ 73 memsiz+ 75 curlin+ 77 oldlin+ 79 oldtext+
+7B datlin+ 7D datptr+ 83 varpnt+ 85 forpnt+ AF prgend+ B8 txtptr+ D6 lock D8 errflg DA errlin+
+DC errpos+ DE errnum DF errstk F2 trcflg F3 flash F4 txtpsv+ F6 cursv+ F8 remstk"""
+POINTERS: dict[int, tuple[str, str, int, int]] = {}
+"""Address on page 0 -> ``screen.`` for an attribute of the screen, its name, shift of its byte, and
+mask of its other byte."""
+for _address, _owner, _name, _word in re.findall(r"(\w+) (screen\.)?(\w+)(\+?)", _PAGE_ZERO):
+    POINTERS[int(_address, 16)] = _owner, _name, 0, 0xFF00 if _word else 0
     if _word:
-        POINTERS[int(_address, 16) + 1] = _name, 8, 0x00FF
-OF_SCREEN = {
-    32: ("left", 0, 0),
-    33: ("width", 0, 0),
-    34: ("top", 0, 0),
-    35: ("bottom", 0, 0),
-    36: ("column", 0, 0),
-    37: ("row", 0, 0),
-    40: ("address", 0, 0xFF00),
-    41: ("address", 8, 0x00FF),
-    50: ("mask", 0, 0),
-}
-"""`POINTERS` for the attributes of `Screen`."""
+        POINTERS[int(_address, 16) + 1] = _owner, _name, 8, 0x00FF
 KEYBOARD = range(0xC000, 0xC010)  # addresses at which the last key is read
 STROBE = range(0xC010, 0xC020)  # and cleared
 PROMPT = 0x33  # address of the prompt that the monitor shows
@@ -76,6 +66,7 @@ PLUS = TOKENS["+"]
 MINUS = TOKENS["-"]
 SUBFLG_SIMPLE = 0x80  # SUBFLG in FOR and DEF FN: neither arrays nor integers are allowed
 DIGITS = range(48, 58)  # the codes of digits
+LETTERS = range(65, 91)  # of capital letters
 HEADER = 4  # bytes of a line before its tokens: the next line's address and the number
 MAX_LINE_HIGH_BYTE = 0x19  # from this high byte on LINGET refuses a further digit: past 63999
 # top bits of a name's two bytes in memory mark its type; a real has none
@@ -84,7 +75,7 @@ STRING = 0x0080
 FUNCTION = 0x8000
 
 _NUMERAL = re.compile(rb" *[-+]?[ 0-9]*(?:\.[ 0-9]*)?(?:E *[-+%c%c]?[ 0-9]*)?" % (PLUS, MINUS))
-_NAME = re.compile(rb"([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")
+_NAME = re.compile(rb" *([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")
 MARKS = {b"": 0, b"$": STRING, b"%": INTEGER}
 _SIGNS = bytes.maketrans(bytes((PLUS, MINUS)), b"+-")
 
@@ -111,14 +102,12 @@ class Memory:
 
     variables_changed: Callable[[], None]
 
-    def __init__(
-        self, keyboard: Keyboard, screen: Device, printer: Device | None, blanks: bool, **dos: bool
-    ) -> None:
+    def __init__(self, keyboard: Keyboard, screen: Device, blanks: bool, **dos: bool) -> None:
         self.ram = bytearray(ADDRESSES + _PADDING)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
         self.ram[0xF1] = 1  # SPEED= 255
         self.screen = Screen(self.ram, screen, blanks)
-        self.console = Console(keyboard, self.screen.write, printer, **dos)
+        self.console = Console(keyboard, self.screen.write, **dos)
         self.console.editor = self.screen
         self.seed, self.fac = FIRST_SEED, AFTER_TYPING
         self.sp = STACK
@@ -158,16 +147,13 @@ class Memory:
         _add_note(self.ignored, what)
 
     def _pass_over_command(self, word: str) -> None:
-        _add_note(self.ignored, f"the disk command {word} was passed over: there is no disk")
+        self.ignore(f"the disk command {word} was passed over: there is no disk")
 
     def peek(self, address: int) -> int:
         """Return the byte at an address."""
         if address in POINTERS:
-            name, shift, _ = POINTERS[address]
-            return int(getattr(self, name)) >> shift & 0xFF
-        if address in OF_SCREEN:
-            name, shift, _ = OF_SCREEN[address]
-            return int(getattr(self.screen, name)) >> shift & 0xFF
+            of_screen, name, shift, _ = POINTERS[address]
+            return int(getattr(self.screen if of_screen else self, name)) >> shift & 0xFF
         if address in SEED:
             return to_stored(self.seed)[address - SEED.start]
         if address in KEYBOARD:
@@ -179,20 +165,18 @@ class Memory:
             return APPLE_II_PLUS[address]
         unkept = address in UNKEPT and address not in self.poked and address not in KEPT_IN_RAM
         if unkept or address >= ROM:
-            _add_note(self.ignored, f"PEEK ({address}) gave 0: that byte is not modelled")
+            self.ignore(f"PEEK ({address}) gave 0: that byte is not modelled")
         return 0 if address >= ROM else self.ram[address]
 
     def poke(self, address: int, value: int) -> None:
         """Store a byte at an address. A new pointer may move the program or its variables."""
         if address in POINTERS:
-            name, shift, other_byte = POINTERS[address]
-            setattr(self, name, getattr(self, name) & other_byte | value << shift)
-            if other_byte:
+            of_screen, name, shift, other_byte = POINTERS[address]
+            owner = self.screen if of_screen else self
+            setattr(owner, name, getattr(owner, name) & other_byte | value << shift)
+            if other_byte and not of_screen:
                 self.text_changed()
                 self.variables_changed()
-        elif address in OF_SCREEN:
-            name, shift, other_byte = OF_SCREEN[address]
-            setattr(self.screen, name, getattr(self.screen, name) & other_byte | value << shift)
         elif address in SEED:
             seed_bytes = bytearray(to_stored(self.seed))
             seed_bytes[address - SEED.start] = value
@@ -255,10 +239,13 @@ class Memory:
         self.txtptr = self.ram.index(0, self.txtptr)
         self.charac = 0
 
-    def name_at(self, pos: int) -> Name:
-        """Return the name that begins at an address: two characters are significant."""
+    def name_at(self, sp: int) -> Name:
+        """Return the name at TXTPTR, of which two characters count. Raises SYNTAX if there is none:
+        a small letter begins no name."""
+        pos = self.txtptr
         match = _NAME.match(self.ram, pos)
-        assert match is not None
+        if match is None:
+            raise Fault("SYNTAX", sp)
         first, second, mark = match.groups()
         key = ord(first) << 8 | ord(second or b"\0") | MARKS[mark]
         end = match.end()
@@ -297,11 +284,21 @@ class Memory:
             self.txtptr += 1
         return number
 
+    def lines(self, address: int = 0) -> Iterator[tuple[int, bytes]]:
+        """Yield number and tokens of each line, following the addresses: of all, or from one on."""
+        ram, address = self.ram, address or self.txttab
+        addresses: set[int] = set()  # after POKEs links may form a circle
+        while ram[address + 1] and address not in addresses:
+            addresses.add(address)
+            text = address + HEADER
+            yield self.word(address + 2), bytes(ram[text : ram.index(0, text)])
+            address = self.word(address)
+
     def find_line(self, number: int, address: int) -> tuple[bool, int]:
         """FNDLIN: search a line from an address on. Return True if it exists, and its address, else
         that of the next larger one or the program's end."""
         ram = self.ram
-        for _ in range(ADDRESSES):  # after POKEs links may form a circle, in which the ROM hangs
+        for _ in range(ADDRESSES):  # in a circle of links the ROM hangs
             if not ram[address + 1]:
                 return False, address
             line = ram[address + 2] | ram[address + 3] << 8

@@ -8,15 +8,16 @@ any other text is read as typed. Rows cut at the edge of the paper are refused.
 import re
 from collections.abc import Sequence
 from itertools import pairwise
+from operator import itemgetter
 from typing import NamedTuple
 
 from ...errors import UserError
+from ..applesoft.console import MAX_INPUT
 from .tokens import (
     DATA,
     FIRST,
     LAST_LINE,
     LAST_STATEMENT,
-    MAX_INPUT,
     REM,
     TOKENS,
     detokenise,
@@ -40,17 +41,11 @@ _PROMPT = re.compile(r"\] *(?:LIST[-, 0-9]*)?$", re.I)
 _NUMBER = re.compile(r"([0-9]{1,5}) ")
 _KEYWORD = re.compile(f" ({'|'.join(map(re.escape, sorted(TOKENS, key=len)[::-1]))})(?: |(?=\n)|$)")
 _TEXT = bytes((*range(0x20, 0x7F), *b"\t\n\f\r"))
+_NO_KEY = re.compile(r"[\t\0]|[^\0-~]")  # a character that no key types
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 Line = tuple[int, bytes]
 """Number and tokens of a line."""
-
-
-class Program(NamedTuple):
-    """A program: its lines in memory order, and remarks for the user on how it was read."""
-
-    lines: list[Line]
-    remarks: list[str]
 
 
 class Row(NamedTuple):
@@ -60,7 +55,7 @@ class Row(NamedTuple):
     text: str
 
 
-def read_program(program: object) -> Program:
+def read_program(program: object) -> list[Line]:
     """Read a program from the text or the bytes of a file.
 
     Parameters
@@ -73,8 +68,8 @@ def read_program(program: object) -> Program:
 
     Returns
     -------
-    Program
-        Lines and remarks.
+    list of (int, bytes)
+        Number and tokens of each line, in memory order.
 
     Raises
     ------
@@ -98,7 +93,7 @@ def read_program(program: object) -> Program:
         kind = type(program).__name__
         raise UserError(f"expected a program's text, or the bytes of a file, not {kind}")
     rows = _rows(program)
-    return Program(_listed_lines(rows) or _typed_lines(rows), [])
+    return _listed_lines(rows) or _typed_lines(rows)
 
 
 def _rows(text: str) -> list[Row]:
@@ -107,11 +102,10 @@ def _rows(text: str) -> list[Row]:
     rows = []
     for number, row in enumerate(texts, 1):
         row = row.strip("\f")
-        for column, character in enumerate(row, 1):
-            if not " " <= character <= "~" and (character > "~" or character in "\t\0"):
-                name = "a tab" if character == "\t" else f"character {_code(character)}"
-                place = f"row {number}, column {column}"
-                raise UserError(f"{place}: {name}; expected characters that an Apple's keys type")
+        if wrong := _NO_KEY.search(row):
+            name = "a tab" if wrong[0] == "\t" else f"character {_code(wrong[0])}"
+            place = f"row {number}, column {wrong.end()}"
+            raise UserError(f"{place}: {name}; expected characters that an Apple's keys type")
         if row.strip(" "):
             rows.append(Row(number, row))
     while rows and _PROMPT.match(rows[0].text):
@@ -120,12 +114,8 @@ def _rows(text: str) -> list[Row]:
         rows.pop()
     if {len(row.text) for row in rows} == {SCREEN_WIDTH}:  # padded, as screens are saved
         rows = [Row(row.number, row.text.rstrip(" ")) for row in rows]
-    edge = min((_indentation(row.text) for row in rows), default=0)
+    edge = min((len(row.text) - len(row.text.lstrip(" ")) for row in rows), default=0)
     return [Row(row.number, row.text[edge:]) for row in rows]
-
-
-def _indentation(text: str) -> int:
-    return len(text) - len(text.lstrip(" "))
 
 
 def _code(character: str) -> str:
@@ -234,10 +224,8 @@ def _decode(text: str) -> bytes | None:
 
 def _begins_line(tokens: bytes) -> bool:
     """Return True if a statement may begin with these tokens."""
-    if not tokens:
-        return False
-    first = tokens[0]
-    return FIRST <= first <= LAST_STATEMENT or (chr(first).isascii() and chr(first).isalpha())
+    first = tokens[:1]
+    return first.isalpha() or bytes([FIRST]) <= first <= bytes([LAST_STATEMENT])
 
 
 # --- typed text -------------------------------------------------------------------------------
@@ -269,64 +257,35 @@ def _typed_lines(rows: Sequence[Row]) -> list[Line]:
 # --- tokenised files --------------------------------------------------------------------------
 
 
-class _Image(NamedTuple):
-    """A tokenised file as the ROM walks it: its lines, the number of links that were wrong,
-    whether it ends with two zeros, and what follows the program."""
-
-    lines: list[Line]
-    wrong_links: int
-    is_ended: bool
-    extra: bytes
-
-    @property
-    def likelihood(self) -> float:
-        """1 for a program as SAVE writes it, else the share of lines that a statement may begin."""
-        if self.lines and self.is_ended and not self.wrong_links:
-            return 1.0
-        lines_begun = sum(_begins_line(tokens.lstrip(b" :")) for _, tokens in self.lines)
-        return lines_begun / max(1, len(self.lines))
-
-
-def _read_image(data: bytes) -> Program | None:
+def _read_image(data: bytes) -> list[Line] | None:
     """Return the program in a tokenised file, None for any other file."""
     length = int.from_bytes(data[:LENGTH_HEADER], "little")
     images = [_walk(data)]
     if LENGTH_HEADER <= length <= len(data) - LENGTH_HEADER:
         images.append(_walk(data[LENGTH_HEADER : LENGTH_HEADER + length]))
-    best = max(images, key=lambda image: image.likelihood)
-    if 0 not in data or best.likelihood < MIN_BEGUN:
-        return None
-    remarks = []
-    if best.wrong_links:
-        remarks.append(
-            f"{best.wrong_links} of {len(best.lines)} links between lines led elsewhere; they are "
-            "made anew, as the Apple does"
-        )
-    if best.extra:
-        remarks.append(
-            f"{len(best.extra)} bytes after the program's last line, such as machine code, "
-            "are left out"
-        )
-    return Program(best.lines, remarks)
+    lines, likelihood = max(images, key=itemgetter(1))
+    return lines if 0 in data and likelihood >= MIN_BEGUN else None
 
 
-def _walk(image: bytes) -> _Image:
+def _walk(image: bytes) -> tuple[list[Line], float]:
     """Walk a program as $D4F2 does: links are not looked at but for a zero high byte, which ends
-    it, as does the memory after the file, which holds zeros."""
+    it, as does the memory after the file, which holds zeros.
+
+    Return its lines, and the likelihood that they are a program: 1 for one as SAVE writes it, else
+    the share of lines that a statement may begin."""
     memory = image + bytes(LONGEST_LINE)
     lines: list[Line] = []
-    links: list[int] = []
+    starts: set[int] = set()  # a link minus its line's place in the file
     line = 0
     while line < len(image) and memory[line + 1]:
         following = following_line(memory, line)
         if following <= line + LINE_HEADER:
-            return _Image([], 0, False, b"")
-        links.append(int.from_bytes(memory[line : line + 2], "little") - following)
+            return [], 0.0
+        starts.add(int.from_bytes(memory[line : line + 2], "little") - following)
         number = int.from_bytes(memory[line + 2 : line + LINE_HEADER], "little")
         lines.append((number, memory[line + LINE_HEADER : following - 1]))
         line = following
-    # a link minus its line's place in the file is the address of the program when it was saved
-    usual = max(links, key=links.count, default=0)
-    wrong = len(links) - links.count(usual)
-    is_ended = image[line : line + 2] == b"\0\0"
-    return _Image(lines, wrong, is_ended, image[line + 2 :].strip(b"\0"))
+    if len(starts) == 1 and image[line : line + 2] == b"\0\0":
+        return lines, 1.0
+    lines_begun = sum(_begins_line(tokens.lstrip(b" :")) for _, tokens in lines)
+    return lines, lines_begun / max(1, len(lines))

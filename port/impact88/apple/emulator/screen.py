@@ -25,8 +25,10 @@ FLASHING = 0x7F
 _BLANK = 0xA0
 _SMALL_LETTERS = 0xE0
 _CONTROLS = range(0x80, 0xA0)  # not shown; RETURN, control-J and control-H move the cursor
+_BACKSPACE = 0x88
 _LINE_FEED = 0x8A
-_USUAL_MASKS = (NORMAL, INVERSE, FLASHING)
+_RETURN = 0x8D
+_USUAL_MASKS = (NORMAL, INVERSE, FLASHING)  # under which all characters are visible
 _SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
 """A visible character, or the end of the line."""
 _TITLE = bytes(code | 0x80 for code in b"APPLE ][")  # in the first row after power-on
@@ -54,21 +56,31 @@ class Screen(Editor):
     """The text screen in ``ram``.
 
     ``column``, ``row``: the cursor, from 0; ``left``, ``width``, ``top``, ``bottom``: the window;
-    ``blanks``: pass skipped columns to the device as blanks, which the real machine does not."""
+    ``blanks``: pass skipped columns to the device as blanks, which the real machine does not;
+    ``routines``: those of the monitor that move the cursor or clear, by address."""
 
     def __init__(self, ram: bytearray, device: Callable[[str], object], blanks: bool) -> None:
         self._ram, self._device, self._blanks = ram, device, blanks
         self.column = self._expected = 0
-        self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
         self.mask = NORMAL
+        self.full_window()
         ram[BASE:END] = bytes([_BLANK]) * (END - BASE)
         ram[BASE + _TITLE_COLUMN : BASE + _TITLE_COLUMN + len(_TITLE)] = _TITLE
         self.move_to_row(1)
-
-    @property
-    def shows(self) -> bool:
-        """True if all characters are visible, as under the masks that the ROM sets."""
-        return self.mask in _USUAL_MASKS
+        self.routines: dict[int, Callable[[], None]] = {
+            0xFC58: self.home,
+            0xFC56: self.home,  # a branch on the carry, which CALL clears, in front of it
+            0xFC22: lambda: self.move_to_row(self.row),
+            0xFC70: self._scroll,
+            0xFC66: self._line_feed,
+            0xFC1A: self._step_up,
+            0xFC10: self._step_back,
+            0xFBF4: self._advance,
+            0xFC9C: lambda: self._clear_from(self.column),
+            0xFC42: lambda: self._clear_rows(self.row, self.column),
+            0xFC62: lambda: self.write("\n"),
+            0xFB2F: self.full_window,
+        }
 
     def write(self, text: str) -> None:
         gap = max(self.column - self._expected, 0) if self._blanks else 0
@@ -82,28 +94,26 @@ class Screen(Editor):
         self._expected = self.column - gap
 
     def _draw(self, text: str) -> None:
-        if self.shows and text.isprintable() and self.column + len(text) < self.width:
+        if (
+            self.mask in _USUAL_MASKS
+            and text.isprintable()
+            and self.column + len(text) < self.width
+        ):
             codes = text.encode("latin-1").translate(_codes(self.mask))
             self._fill(self.address + self.column, codes)
             self.column += len(text)
             return
         for character in text:
-            if character >= " ":
-                code = character.encode("latin-1").translate(_codes(self.mask))
-                if code[0] == _LINE_FEED:
-                    self._line_feed()
-                elif code[0] in _CONTROLS:  # what a mask such as 128 leaves of a character
-                    character = chr(code[0] & 0x7F)
-                else:
-                    self._fill(self.address + self.column, code)
-                    self._advance()
-            if character >= " ":
-                continue
-            if character in "\n\r":
-                self.column = 0
-                self._line_feed()
-            elif character == "\b":
+            code = character.encode("latin-1").translate(_codes(self.mask))
+            if code[0] not in _CONTROLS:
+                self._fill(self.address + self.column, code)
+                self._advance()
+            elif code[0] == _BACKSPACE:
                 self._step_back()
+            elif code[0] in (_LINE_FEED, _RETURN):  # which a mask such as 128 may make of a letter
+                if character == "\n" or code[0] == _RETURN:
+                    self.column = 0
+                self._line_feed()
 
     def _fill(self, address: int, codes: bytes | bytearray) -> None:
         """Store bytes from an address on, but none after the screen, where the program is."""
@@ -164,27 +174,6 @@ class Screen(Editor):
             self.column = 0
             self._line_feed()
 
-    def call(self, address: int) -> bool:
-        """CALL a routine of the monitor that moves the cursor or clears; return False for
-        others."""
-        routines: dict[int, Callable[[], None]] = {
-            0xFC58: self.home,
-            0xFC56: self.home,  # a branch on the carry, which CALL clears, in front of it
-            0xFC22: lambda: self.move_to_row(self.row),
-            0xFC70: self._scroll,
-            0xFC66: self._line_feed,
-            0xFC1A: self._step_up,
-            0xFC10: self._step_back,
-            0xFBF4: self._advance,
-            0xFC9C: lambda: self._clear_from(self.column),
-            0xFC42: lambda: self._clear_rows(self.row, self.column),
-            0xFC62: lambda: self.write("\n"),
-            0xFB2F: self.full_window,
-        }
-        if address in routines:
-            routines[address]()
-        return address in routines
-
     def full_window(self) -> None:
         """TEXT: set the window to the whole screen, the cursor to the last row."""
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
@@ -206,7 +195,8 @@ class Screen(Editor):
         return chr((code & 0xDF if code >= _SMALL_LETTERS else code) & 0x7F)
 
     def escape(self, key: str) -> None:
-        if self.call(_ESCAPES.get(key, 0)):
+        if key in _ESCAPES:
+            self.routines[_ESCAPES[key]]()
             self._expected = self.column
 
     def end_line(self, shown: bool) -> None:

@@ -36,27 +36,28 @@ SEMICOLON = ord(";")
 OPEN = ord("(")
 CLOSE = ord(")")
 LAST_LINE = 63999  # the ROM's largest line number
-MAX_INPUT = 239  # characters of a typed line that Applesoft keeps
 
-_LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a")
+_LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a", "", "", "")
+"""LIST's words for the bytes from `FIRST` on: after the keywords the ROM's table continues with a
+zero, which is an empty word, and the error messages."""
 _BY_LETTER: dict[str, list[tuple[str, int]]] = {}
 for _word, _token in TOKENS.items():
     _BY_LETTER.setdefault(_word[0], []).append((_word, _token))
 
 
 def _keyword(text: str, start: int) -> tuple[int, int] | None:
-    """Return token and end of the keyword at ``start``, ignoring blanks, or None. (A single regular
-    expression for all keywords takes three times as long.)"""
+    """Return token and end of the keyword at ``start``, ignoring blanks, or None. ``text`` ends
+    with a zero. (A single regular expression for all keywords takes three times as long.)"""
     for word, token in _BY_LETTER.get(text[start], ()):
         position = start
         for letter in word:
-            while text[position : position + 1] == " ":
+            while text[position] == " ":
                 position += 1
-            if text[position : position + 1] != letter:
+            if text[position] != letter:
                 break
             position += 1
         else:
-            if token != AT or text[position : position + 1] not in ("N", "O"):
+            if token != AT or text[position] not in ("N", "O"):
                 return token, position
     return None
 
@@ -66,16 +67,16 @@ def tokenise(line: str, *, folded: bool = False) -> bytes:
     """Return the bytes of a line's statements as the ROM's parser makes them, without the final
     zero. ``folded``: small letters outside quotes and remarks count as capitals."""
     line = keyboard_codes(line)
-    text = line.upper() if folded else line
+    text = (line.upper() if folded else line) + "\0"
     out = bytearray()
     position = 0
     in_data = False
-    while position < len(text):
+    while position < len(line):
         character = text[position]
         if character == " " and not in_data:
             position += 1
         elif character == '"':
-            end = text.find('"', position + 1) + 1 or len(text)
+            end = text.find('"', position + 1) + 1 or len(line)
             out += line[position:end].encode("ascii")
             position = end
         elif in_data or "0" <= character <= ";":
@@ -123,7 +124,7 @@ def detokenise(tokens: bytes) -> str:
             if byte < FIRST:
                 text += chr(byte)
                 continue
-            word = print_word if byte == PRINT else spelling(byte)
+            word = print_word if byte == PRINT else _LISTED[byte - FIRST]
             apart = text and not text.endswith((" ", "("))
             if not keyword and text.endswith(":") and place < len(tokens) - 1:
                 apart = False
@@ -136,16 +137,9 @@ def detokenise(tokens: bytes) -> str:
     return text
 
 
-def spelling(token: int) -> str:
-    """Return LIST's text for a token. After the keywords the ROM's table continues with a zero,
-    which is an empty word, and the error messages."""
-    index = token - FIRST
-    return _LISTED[index] if index < len(_LISTED) else ""
-
-
 def list_text(byte: int) -> str:
     """Return LIST's text for a byte of a line."""
-    return chr(byte) if byte < FIRST else f" {spelling(byte)} "
+    return chr(byte) if byte < FIRST else f" {_LISTED[byte - FIRST]} "
 
 
 def following_line(text: bytes | bytearray, line: int) -> int:

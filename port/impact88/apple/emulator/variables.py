@@ -13,9 +13,9 @@ from math import prod
 from struct import Struct
 from typing import NamedTuple
 
-from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
+from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .faults import Fault, call_at, with_stack
+from .faults import Fault, call_at
 from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
@@ -213,15 +213,11 @@ class Variables(Memory):
             if address >= self.fretop:
                 raise ApplesoftError("OUT OF MEMORY")
 
-    def variable(self, sp: int, dimensions: int = 0, mark: int = 0) -> int:
+    def variable(self, sp: int, dimensions: int = 0, mark: int = 0, make: bool = True) -> int:
         """PTRGET: read a variable's name and return the address of its value, created if necessary.
-        ``dimensions``: nonzero for DIM, whose arrays must be new; ``mark``: the top bit for FN."""
-        entry = self.names.get(self.txtptr)
-        if not entry:
-            if not 65 <= self.character() <= 90:  # ISLETC: A to Z; a small letter begins no name
-                raise Fault("SYNTAX", sp)
-            entry = self.name_at(self.txtptr)
-        name, self.txtptr, subscripts = entry
+        ``dimensions``: nonzero for DIM, whose arrays must be new; ``mark``: the top bit for FN;
+        ``make``: False in a formula, where a simple variable never assigned is a zero in ROM."""
+        name, self.txtptr, subscripts = self.names.get(self.txtptr) or self.name_at(sp)
         self.valtyp = IS_STRING if name & INTEGER == STRING else 0
         self.inttyp = name & INTEGER == INTEGER
         if self.inttyp and self.subflg:
@@ -232,6 +228,8 @@ class Variables(Memory):
         name |= mark
         address = self.simple.get(name)
         if address is None:
+            if not make:
+                return EMPTY
             address = call_at(sp - 4, self._make, name)
         self.varpnt = address
         return address
@@ -336,12 +334,8 @@ class Variables(Memory):
     def assign_integer(self, address: int, x: Number, sp: int) -> None:
         """AYINT: assign a number, rounded, to an integer variable. Raises ILLEGAL QUANTITY from
         32768 and -32768 on; a wrong bit in the ROM's constant admits -32768.0005, as 32767."""
-        try:
-            x = rounded(x)
-            if x[0] >= 0x90 and compare(LOWEST, x):
-                raise illegal_quantity()
-            n = to_integer(x) & 0xFFFF
-        except ApplesoftError as error:
-            raise with_stack(error, sp) from None
+        x = call_at(sp, rounded, x)
+        if x[0] >= 0x90 and compare(LOWEST, x):
+            raise Fault("ILLEGAL QUANTITY", sp)
         if address < ROM:
-            self.ram[address : address + 2] = n.to_bytes(2, "big")
+            self.ram[address : address + 2] = (to_integer(x) & 0xFFFF).to_bytes(2, "big")
