@@ -325,7 +325,7 @@ def numbers_of(
         text = round_number(value, decimals)
         rows[name] = Row(
             name,
-            quantity(name).meaning,
+            case.view.meaning(name),
             case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(rules[name], ""),
             text,
             clock(value) if text and "PDOF" in name else "",
