@@ -77,5 +77,6 @@ def library(name: str, extra: str, what: str) -> ModuleType:
     try:
         return import_module(name)
     except ImportError:
-        package = name.partition(".")[0]
-        raise UserError(f"{what} needs {package}; pip install 'impact88[{extra}]'") from None
+        raise UserError(
+            f"{what} needs the extra {extra}: pip install '.[{extra}]' in the checkout"
+        ) from None

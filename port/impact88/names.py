@@ -68,7 +68,7 @@ SCENE = _table(
     ("GA", "Γ", "angle of the impact surface from the y axis", ANGLE, 290),
     ("PA", "φ_a", "angle from A's length axis to its impact point", ANGLE, 290),
     ("PB", "φ_b", "angle from B's length axis to its impact point", ANGLE, 290),
-    ("TA", "θ_a", "heading angle of A from the x axis", ANGLE, 290),
+    ("TA", "θ_a", "heading angle of A from the x axis; A faces TA + 180", ANGLE, 290),
     ("TB", "θ_b", "heading angle of B from the x axis", ANGLE, 290),
     ("MA", "m_a", "mass of A", MASS, 310),
     ("MB", "m_b", "mass of B", MASS, 310),

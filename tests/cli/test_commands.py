@@ -285,6 +285,39 @@ def test_a_full_disk_is_status_2() -> None:
     assert shell_run.stderr == "impact88 run: standard output: No space left on device\n"
 
 
+@pytest.mark.parametrize(
+    ("words", "package", "message"),
+    [
+        ("solve cases.parquet", "polars", "solve: this format needs the extra tables"),
+        (
+            "oracle scenes.jsonl",
+            "mpmath",
+            "oracle: the reference of 30 digits needs the extra oracle",
+        ),
+    ],
+)
+def test_a_missing_extra_is_named(
+    words: str, package: str, message: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "cases.parquet").write_bytes(b"PAR1")
+    monkeypatch.setitem(sys.modules, package, None)
+    outcome = command(*words.split(), folder=folder)
+    extra = message.rpartition(" ")[2]
+    assert outcome.status == 2
+    assert outcome.err == f"impact88 {message}: pip install '.[{extra}]' in the checkout\n"
+
+
+def test_a_compass_heading_is_clockwise_from_north(folder: Path) -> None:
+    words = "--set headings=compass --set HA=90 --set HB=180 --set HAF=130 --set HBF=120".split()
+    (folder / "courses.toml").write_text(
+        'units = "metric"\nM = 4\nSAF = 50\nSBF = 30\nMA = 1800\nMB = 1200\n'
+    )
+    rows = command("solve", "courses.toml", *words, "--results", "HA,SA", folder=folder).out
+    assert "course of A before impact, clockwise from north" in rows
+    scene = command("scene", "courses.toml", *words, folder=folder).out
+    assert "# course of A before impact, clockwise from north [deg]" in scene
+
+
 def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(args: object) -> None:
         raise RuntimeError("unexpected")

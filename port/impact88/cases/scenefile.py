@@ -91,7 +91,7 @@ def write_toml(texts: Mapping[str, str], view: View) -> str:
         if not _PLAIN_TOML.fullmatch(text):
             text = json.dumps(printable(text), ensure_ascii=False)
         line = f"{name} = {text}"
-        comment = f"# {row.meaning} [{view.unit(name) or row.unit}]" if row else ""
+        comment = f"# {view.meaning(name)} [{view.unit(name) or row.unit}]" if row else ""
         lines.append(f"{line:<20} {comment}".rstrip())
     return "\n".join(lines) + "\n"
 

@@ -208,9 +208,12 @@ class View:
         return f"{name} [{unit}]" if unit else name
 
     def meaning(self, name: str) -> str:
-        """Return the meaning of a quantity in words, with the zero of its direction."""
-        zero = "clockwise from north" if self._turns(name) else "from the x axis"
-        return str(quantity(name).meaning.replace("from the x axis", zero))
+        """Return the meaning of a quantity in words, with the zero of its direction; where headings
+        are those of a compass, also TA is the way the vehicle faces."""
+        text = str(quantity(name).meaning)
+        if self._turns(name):
+            return text.partition(";")[0].replace("from the x axis", "clockwise from north")
+        return text
 
     def map(self, name: str, symbol: str = "") -> tuple[Fraction, Fraction]:
         """Return factor and offset of ``base = offset + factor * shown``.

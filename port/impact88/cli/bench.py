@@ -4,7 +4,7 @@ impact88 bench --json
 
 The listing in double precision, its equations by LAPACK, the Apple's own arithmetic, and solve by
 numpy and compiled, on cars like the chapter's and on cars that meet a heavy vehicle. Errors are
-those of the final velocities against 50 digits (needs pip install 'impact88[oracle]')."""
+those of the final velocities against 50 digits (needs pip install '.[oracle]' in the checkout)."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ Answers each line {"id": ..., "scene": {"MA": 143.5, ...}} with one: the printou
 Applesoft prints and stores it, in double precision and to 30 digits; what rounding may change in
 it; condition and warnings. A line that cannot be used is answered with what is wrong. `impact88
 compare --kit ID` judges the answers of another program to the vectors. Needs pip install
-'impact88[oracle]'.
+'.[oracle]' in the checkout.
 
 exit status: 0 every line answered; 1 some could not be used; 2 no usable input"""
 

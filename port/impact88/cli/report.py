@@ -6,7 +6,7 @@ FILE.toml is any collision that impact88 solve answers. The page is one file, ma
 two sheets: question, answer with intervals, drawing to scale, inputs with their sources, method,
 and what is not judged. case = "24-117", title, examiner and date in the file head it, and
 UX_source = "event data recorder" says where a value comes from. The same input and version give the
-same bytes. Needs pip install 'impact88[report]'.
+same bytes. Needs pip install '.[report]' in the checkout.
 
 exit status: 0 written; 1 written, but no impact that physics allows agrees; 2 bad input"""
 

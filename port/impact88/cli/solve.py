@@ -11,7 +11,7 @@ and what would help.
 
 TABLE (.csv .jsonl .parquet .xlsx; - is standard input, CSV): a column for each name of a scene,
 units in the headings (UX [mph]). Results follow; a row that cannot be used is left empty and named
-on stderr. Parquet and Excel need pip install 'impact88[tables]'.
+on stderr. Parquet and Excel need pip install '.[tables]' in the checkout.
 
 exit status: 0 done; 1 no impact that physics allows, values that contradict one another, or bad
 rows; 2 bad input"""

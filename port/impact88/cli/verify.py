@@ -13,7 +13,7 @@ Reads a printout, recovers its inputs, runs the 1988 program on them and compare
   INCOMPLETE                numbers are missing or were not read, and the others do not decide
   DIFFERS                   the page is not what the program prints for its inputs
 
-Pictures (PNG, JPEG, TIFF, PDF) need pip install 'impact88[pictures]'.
+Pictures (PNG, JPEG, TIFF, PDF) need pip install '.[pictures]' in the checkout.
 
 exit status: 0 identical; 1 any other verdict; 2 a file that cannot be read"""
 

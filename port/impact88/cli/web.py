@@ -3,7 +3,7 @@ impact88 web --no-browser           print the address only
 
 Printouts, collisions and the 1988 program in a browser, reachable from this computer only and
 without a network. The address contains a random token; requests without it are refused. Control-C
-ends it. Needs pip install 'impact88[web]'."""
+ends it. Needs pip install '.[web]' in the checkout."""
 
 from __future__ import annotations
 

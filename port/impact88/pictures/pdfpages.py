@@ -42,7 +42,9 @@ def render_pages(data: bytes, name: str, max_side: int) -> Iterator[Rendered]:
     from impact88.errors import UserError
 
     if find_spec("pypdfium2") is None:
-        raise UserError("PDFs need pypdfium2; pip install 'impact88[pictures]'", name)
+        raise UserError(
+            "a PDF needs the extra pictures: pip install '.[pictures]' in the checkout", name
+        )
     command = [sys.executable, __file__, str(max_side)]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
