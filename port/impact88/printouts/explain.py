@@ -52,16 +52,15 @@ def explain(verification: Verification) -> str:
     """
     findings = [finding for finding in verification.findings if finding.kind is Kind.NUMBER]
     labels = [finding for finding in verification.findings if finding.kind is Kind.LABEL]
-    names = [finding.name for finding in findings if finding.name in RESULTS]
-    if len(names) >= MIN_NUMBERS and verification.scene:
-        read = {name: verification.numbers[name].read for name in names}
+    read = {finding.name: finding.read for finding in findings if finding.name in RESULTS}
+    if len(read) >= MIN_NUMBERS and verification.scene:
         for cause, fields, error in _causes(verification):
             misses = [
                 name
                 for name, text in read.items()
                 if not _agrees(fields.get(name, ""), text, error)
             ]
-            if len(misses) <= MAX_UNEXPLAINED * len(names):
+            if len(misses) <= MAX_UNEXPLAINED * len(read):
                 return cause + (f"; but not {', '.join(misses)}" if misses else "")
         return NOT_COMPUTED
     slips = [_slip(verification, finding) for finding in findings]

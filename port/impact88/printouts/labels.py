@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
@@ -116,7 +117,7 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     labels = find_labels(glyphs)
     limits: list[float] = []
     for line in split_at_gaps(glyphs, LINE_GAP):
-        limits += [WRONG / (2 if len(find_labels(line)) == 1 else 1)] * len(line)
+        limits += [_note_cost(line)] * len(line)
     sums = np.append(0.0, np.full(len(LABELS), np.inf))
     ways = []
     for (text, start, _), costs in zip(labels, _costs_of(labels), strict=True):
@@ -138,6 +139,15 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
         for k, (at, (text, start, stop)) in enumerate(zip(places, labels, strict=True))
         if at
     ]
+
+
+def _note_cost(line: Sequence[Glyph]) -> float:
+    """Return the cost that a label of a line is a note's: less where the line lacks labels."""
+    texts = [text for text, *_ in find_labels(line)]
+    rows = Counter(label.row for label in LABELS if label.text in texts)
+    best = [row for row, count in rows.items() if count == max(rows.values())]
+    size = min((sum(label.row == row for label in LABELS) for row in best), default=0)
+    return WRONG / (2 * len(texts)) if len(texts) < size else WRONG
 
 
 def _costs_of(labels: Sequence[tuple[str, int, int]]) -> NDArray[np.float64]:

@@ -185,7 +185,11 @@ class Reading:
                 for gap, due in zip(gaps, BLANKS[name], strict=True)
             ]
         usual = np.maximum(0, np.median([*extra.values()], axis=0)).tolist()
-        return {name: (front - usual[0], end - usual[1]) for name, (front, end) in extra.items()}
+        firsts = {name for name, slot in self.slots.items() if slot.glyphs[0].gap == LINE_GAP}
+        return {
+            name: (math.inf if name in firsts else front - usual[0], end - usual[1])
+            for name, (front, end) in extra.items()
+        }
 
     def is_apart(self, name: str) -> bool:
         """Return True for a number with more blanks beside it, within its line."""
@@ -275,7 +279,7 @@ class _Reader:
         owners = {_owner(anchor.label) for anchor in anchors}
         cells_read |= {SLOT_CELLS[owner] for owner in owners if owner}
         if not PROMPT.search(chars_of(glyphs)):
-            cells_read |= {SLOT_CELLS[reply] for reply in REPLIES}
+            cells_read |= {j for j, cell in enumerate(CELLS) if cell.row in PROMPTS}
         before = Anchor(FIRST, "", 0, 0)
         for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
             cells = [j for j in _cells_between(before.label, anchor.label) if j not in cells_read]
@@ -319,11 +323,13 @@ class _Reader:
         if count:
             slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
             end = before.stop + count
-            ends = [glyph.gap > 0 or glyph.char in ")%" for glyph in self.glyphs[end : end + 1]]
+            marks = {")", "%"} & {CELLS[SLOT_CELLS[owner] + 1].char}
+            ends = [glyph.gap > 0 or glyph.char in marks for glyph in self.glyphs[end : end + 1]]
             is_label = any(glyph.char.isalpha() for glyph in glyphs[count : count + 1])
             is_last = not any(CELLS[j].kind == "slot" for j in cells if CELLS[j].row == row)
             slot.is_bounded = all(ends) and (is_last or is_label)
             slots[owner] = slot
+            slot.is_torn = any(b.gap > 0 and a.char not in ",;-" for a, b in pairwise(slot.glyphs))
             if owner not in MANY and is_last:  # nothing else belongs there
                 rest = glyphs[count:]
                 torn = _count_torn(rest)
@@ -349,8 +355,7 @@ class _Reader:
         if before.row == HEADING:
             return _end_of_line(glyphs, len(ANGLES))
         if before.row in PROMPTS:
-            is_next = after.name in ("REPLY_B", "MA") and after.row == before.row + 1
-            return len(glyphs) if is_next or self.reading.ending else _end_of_line(glyphs, 1)
+            return _end_of_line(glyphs, 1)
         return _count_number(glyphs) if before.text.endswith("=") else 0
 
     def _add_angles(self, row: Slot) -> None:

@@ -240,7 +240,8 @@ class Comparison:
         findings += self.text_findings()
         findings += self._repeated_findings()
         if self.reading.ending != self.ending:
-            kind = Kind.LABEL if self.reading.ending else Kind.UNREAD
+            is_cut = self.ending.startswith(self.reading.ending)
+            kind = Kind.UNREAD if is_cut else Kind.LABEL
             findings.append(self.finding(kind, "message", [], self.ending, len(CELLS)))
         return sorted(findings, key=lambda finding: finding.start)
 
@@ -298,7 +299,7 @@ class Comparison:
                 continue
             texts = [self.reading.replies.get(name, "") for name in REPLIES[reply]]
             is_same = all(map(is_same_value, texts, reply_text.split(",")))
-            is_exact = slot.label == "exact"
+            is_exact = slot.label == "exact" and not slot.is_torn
             if not is_same or not is_exact:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
                 kind = Kind.DOUBT
@@ -371,7 +372,13 @@ class Comparison:
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
-        is_open = (is_machine_read or bool(unsure)) and len(numbers) + len(unread) > MAX_ALTERED
+        is_open = (is_machine_read or bool([*unsure, *unread])) and len(numbers) + len(
+            unread
+        ) > MAX_ALTERED
+        is_open |= not is_machine_read and any(
+            self.reading.slots[name].is_torn or len(self.reading.readings(name)) > 1
+            for name in unsure
+        )
         is_open |= any(finding.name in INPUTS for finding in unread)
         is_open |= any(map(self.reading.is_apart, INPUTS))
         swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
