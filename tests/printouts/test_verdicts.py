@@ -100,6 +100,12 @@ def test_layouts_of_genuine_pages_are_identical(name: str) -> None:
     assert verification.verdict is Verdict.IDENTICAL, verification.findings
 
 
+@pytest.mark.parametrize("name", ["quoted", "numbered", "stamped"])
+def test_an_altered_page_with_text_before_its_lines_differs(name: str) -> None:
+    (verification,) = verify(str(LAYOUTS[name](PAGE.replace("-13.263", "-13.963"))))
+    assert verification.verdict is Verdict.DIFFERS
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -373,6 +379,44 @@ def test_of_a_label_twice_in_a_row_neither_accuses() -> None:
             for pair in (f"{{0}}= 41 {{0}}= {number.read}", f"{{0}}= {number.read} {{0}}= 41"):
                 text = PAGE.replace(f" {name}= {number.read}", " " + pair.format(name), 1)
                 assert single(text).verdict in (Verdict.AS_READ, Verdict.INCOMPLETE), text
+
+
+@pytest.mark.parametrize("title", ["Case 88-1432", "RUN 1", "12", "IA= 2215 IB= 3000"])
+def test_a_line_above_the_page_changes_nothing(title: str) -> None:
+    altered = BODY.replace(" 0      60      -30", " 2      60      -30")
+    one = single(altered).explanation.partition(":")[2]
+    assert " or TA 2 " in one
+    verification = single(f"{title}\n\n{altered}")
+    assert verification.verdict is Verdict.DIFFERS
+    assert verification.explanation.partition(":")[2] == one
+    assert single(f"{title}\n\n{BODY}").verdict in (Verdict.IDENTICAL, Verdict.AS_READ)
+
+
+@pytest.mark.parametrize("note", [" 12", "     12", "\n12", "\n\n 1991"])
+def test_a_number_beside_a_reply_is_not_the_replys(note: str) -> None:
+    reply = "?-29.04,0,0"
+    assert reply in PAGE
+    assert single(PAGE.replace(reply, reply + note)).verdict is Verdict.AS_READ
+    altered = PAGE.replace(reply, "?-29.04,1,0")
+    assert single(altered).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "verdict"),
+    [
+        ("MA= 143.5", "MA= 143.5(1)", Verdict.INCOMPLETE),
+        ("MA= 143.5", "MA= 143.6", Verdict.DIFFERS),
+        ("VAX= -13.263", "VAX= 1) -13.263", Verdict.INCOMPLETE),
+        ("VAX= -13.263", "VAX= -13.264", Verdict.DIFFERS),
+    ],
+)
+def test_marks_at_a_number_accuse_nothing(old: str, new: str, verdict: Verdict) -> None:
+    assert single(PAGE.replace(old, new)).verdict is verdict
+
+
+def test_rows_of_another_printout_are_not_explained_by_an_arithmetic() -> None:
+    other = SAMPLES[3][SAMPLES[3].index("VBX=") :]
+    assert "precision" not in single(PAGE.rstrip() + "\n" + other).explanation
 
 
 def test_numbers_without_labels_are_no_spins() -> None:
