@@ -70,6 +70,7 @@ def _labels_of(row: int) -> Iterator[Label]:
 
 LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
 """The labels of each row."""
+ROW_SIZES = Counter(label.row for label in LABELS)
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
 LABEL = re.compile("|".join(map(re.escape, _TEXTS)))
 WORDS = re.compile("[A-Z]{3}")
@@ -146,7 +147,7 @@ def _note_cost(line: Sequence[Glyph]) -> float:
     texts = [text for text, *_ in find_labels(line)]
     rows = Counter(label.row for label in LABELS if label.text in texts)
     best = [row for row, count in rows.items() if count == max(rows.values())]
-    size = min((sum(label.row == row for label in LABELS) for row in best), default=0)
+    size = min((ROW_SIZES[row] for row in best), default=0)
     return WRONG / (2 * len(texts)) if len(texts) < size else WRONG
 
 

@@ -184,12 +184,10 @@ class Reading:
                 math.inf if gap.strip(" \t") else (len(gap) - due) / max(1, due)
                 for gap, due in zip(gaps, BLANKS[name], strict=True)
             ]
+            if slot.glyphs[0].gap == LINE_GAP:  # also behind what precedes every line
+                extra[name][0] = math.inf
         usual = np.maximum(0, np.median([*extra.values()], axis=0)).tolist()
-        firsts = {name for name, slot in self.slots.items() if slot.glyphs[0].gap == LINE_GAP}
-        return {
-            name: (math.inf if name in firsts else front - usual[0], end - usual[1])
-            for name, (front, end) in extra.items()
-        }
+        return {name: (front - usual[0], end - usual[1]) for name, (front, end) in extra.items()}
 
     def is_apart(self, name: str) -> bool:
         """Return True for a number with more blanks beside it, within its line."""
@@ -282,8 +280,9 @@ class _Reader:
             cells_read |= {j for j, cell in enumerate(CELLS) if cell.row in PROMPTS}
         before = Anchor(FIRST, "", 0, 0)
         for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
-            cells = [j for j in _cells_between(before.label, anchor.label) if j not in cells_read]
-            self._read_between(glyphs[before.stop : anchor.start], before, anchor.label, cells)
+            between = range(before.label.stop, anchor.label.start) or _rest_of_row(before.label)
+            cells = [j for j in between if j not in cells_read]
+            self._read_between(glyphs[before.stop : anchor.start], before, cells)
             self._read_label(anchor)
             if anchor.label.start <= before.label.start:
                 reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
@@ -312,13 +311,11 @@ class _Reader:
             if further := glyphs[len(cells) : -1]:  # of a longer label in its place
                 self.reading.foreign.append([*further])
 
-    def _read_between(
-        self, glyphs: Sequence[Glyph], before: Anchor, after: Label, cells: list[int]
-    ) -> None:
+    def _read_between(self, glyphs: Sequence[Glyph], before: Anchor, cells: list[int]) -> None:
         """Read the text between two anchors: the number that the first owns, and the rest."""
         owner, row = _owner(before.label), before.label.row
         is_exact = before.read == before.label.text
-        count = self._count_owned(glyphs, before.label, after)
+        count = _count_owned(glyphs, before.label)
         slots: dict[str, Slot] = {}
         if count:
             slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
@@ -349,14 +346,6 @@ class _Reader:
                 self._add_angles(slot)
             else:
                 self._add_slot(name, slot)
-
-    def _count_owned(self, glyphs: Sequence[Glyph], before: Label, after: Label) -> int:
-        """Return how many glyphs are the number, or the numbers, of the label before them."""
-        if before.row == HEADING:
-            return _end_of_line(glyphs, len(ANGLES))
-        if before.row in PROMPTS:
-            return _end_of_line(glyphs, 1)
-        return _count_number(glyphs) if before.text.endswith("=") else 0
 
     def _add_angles(self, row: Slot) -> None:
         """Add the angles of a row, which are read only if there are five."""
@@ -415,7 +404,7 @@ class _Reader:
         for name, members in members_of.items():
             places = sum(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells)
             is_whole = _is_whole(glyphs, members)
-            is_single = is_whole and places == _count_numbers(glyphs, members, members_of)
+            is_single = is_whole and places == _count_numbers(glyphs, glyphs[members[0]])
             label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in owners)
             if not label and not is_single:
                 foreign.update(members)
@@ -449,6 +438,15 @@ def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
         yield sign
 
 
+def _count_owned(glyphs: Sequence[Glyph], label: Label) -> int:
+    """Return how many glyphs are the number, or the numbers, of the label before them."""
+    if label.row == HEADING:
+        return _end_of_line(glyphs, len(ANGLES))
+    if label.row in PROMPTS:
+        return _end_of_line(glyphs, 1)
+    return _count_number(glyphs) if label.text.endswith("=") else 0
+
+
 def _owner(label: Label) -> str:
     """Return the number, or numbers, that follow a label."""
     if label.row == HEADING:
@@ -456,15 +454,9 @@ def _owner(label: Label) -> str:
     return label.name if label.text[-1:] in ("=", "?") else ""
 
 
-def _cells_between(before: Label, after: Label) -> Iterator[int]:
-    """Yield the cells between two labels; of labels out of order those of their rows."""
-    if before.stop <= after.start:
-        yield from range(before.stop, after.start)
-        return
-    for j, cell in enumerate(CELLS):
-        is_after_first = cell.row == before.row and j >= before.stop
-        if is_after_first or (cell.row == after.row and j < after.start):
-            yield j
+def _rest_of_row(label: Label) -> list[int]:
+    """Return the cells after a label in its row."""
+    return [j for j, cell in enumerate(CELLS) if cell.row == label.row and j >= label.stop]
 
 
 def _end_of_line(glyphs: Sequence[Glyph], words: int) -> int:
@@ -502,15 +494,9 @@ def _count_torn(rest: Sequence[Glyph]) -> int:
     return count
 
 
-def _count_numbers(glyphs: Sequence[Glyph], members: list[int], own: dict[str, list[int]]) -> int:
-    """Return how many words with digits are on the line of a number, replies aside."""
-    replies = {i for reply in REPLIES for i in own.get(reply, ())}
-    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs])
-    line = [
-        glyph
-        for i, glyph in enumerate(glyphs)
-        if lines[i] == lines[members[0]] and i not in replies
-    ]
+def _count_numbers(glyphs: Sequence[Glyph], glyph: Glyph) -> int:
+    """Return how many words with digits are on the line of a glyph."""
+    line = next(line for line in split_at_gaps(glyphs, LINE_GAP) if glyph in line)
     return sum(bool(re.search("[0-9]", chars_of(word))) for word in split_at_gaps(line))
 
 

@@ -339,7 +339,6 @@ class Comparison:
         names = {name for name, _ in self.reading.repeated}
         rows = {ROW_OF[name] for name in names}
         full_rows = rows - {ROW_OF[name] for name in NAMES if name not in names}
-        named_rows = full_rows & {row for row, _ in self.reading.disorder}
         for row, glyph in self.reading.disorder:
             kind = Kind.ROW_TWICE if row in full_rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
@@ -349,7 +348,7 @@ class Comparison:
             is_other = is_sure and as_printed(slot.text) != printed
             if ROW_OF[name] in full_rows and is_other:
                 yield self.finding(Kind.NUMBER, name, slot.glyphs, printed, 0)
-            elif ROW_OF[name] not in named_rows:
+            elif ROW_OF[name] not in full_rows:
                 yield self.finding(Kind.TWICE, name, slot.glyphs, printed, 0)
 
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
@@ -372,7 +371,7 @@ class Comparison:
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
-        is_open = (is_machine_read or bool([*unsure, *unread])) and len(numbers) + len(
+        is_open = (is_machine_read or bool(unsure or unread)) and len(numbers) + len(
             unread
         ) > MAX_ALTERED
         is_open |= not is_machine_read and any(
