@@ -51,7 +51,6 @@ def explain(verification: Verification) -> str:
         One sentence, "" if nothing of the list explains it.
     """
     findings = [finding for finding in verification.findings if finding.kind is Kind.NUMBER]
-    labels = [finding for finding in verification.findings if finding.kind is Kind.LABEL]
     read = {finding.name: finding.read for finding in findings if finding.name in RESULTS}
     if len(read) >= MIN_NUMBERS and verification.scene:
         for cause, fields, error in _causes(verification):
@@ -74,7 +73,8 @@ def explain(verification: Verification) -> str:
     slips += [
         f"line {verification.line_of(finding.start)}: {finding.read!r} is where the program "
         f"prints {finding.printed!r}"
-        for finding in labels
+        for finding in verification.findings
+        if finding.kind is Kind.LABEL
     ]
     return "; ".join(slips) if len(slips) < MIN_NUMBERS else ""
 
