@@ -371,15 +371,13 @@ class Comparison:
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
-        is_open = (is_machine_read or bool(unsure or unread)) and len(numbers) + len(
-            unread
-        ) > MAX_ALTERED
+        is_many = len([*numbers, *unread]) > MAX_ALTERED
+        is_open = is_many and bool(is_machine_read or unsure or unread)
         is_open |= not is_machine_read and any(
             self.reading.slots[name].is_torn or len(self.reading.readings(name)) > 1
             for name in unsure
         )
-        is_open |= any(finding.name in INPUTS for finding in unread)
-        is_open |= any(map(self.reading.is_apart, INPUTS))
+        is_open |= any(f.name in INPUTS for f in unread) or any(map(self.reading.is_apart, INPUTS))
         swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
         is_open |= is_machine_read and ("" in swaps or len({*swaps}) < len(swaps))
         open_numbers = [f for f in numbers if is_open or PARTNERS.get(f.name) in unsure]
