@@ -82,12 +82,6 @@ def test_percentage_of_a_compass_heading_is_of_the_heading() -> None:
     assert ends == pytest.approx((268.29, 273.71))
 
 
-def test_meaning_of_a_heading_has_its_zero() -> None:
-    meaning = "heading angle of A from the x axis; A faces TA + 180"
-    assert View().meaning("TA") == View(axes="sae").meaning("TA") == meaning
-    assert View(headings="compass").meaning("TA") == "heading angle of A clockwise from north"
-
-
 def test_digits_are_kept_where_nothing_converts_them() -> None:
     assert read("MA", "143.50", PLAIN).typed == "143.50"
     assert read("MA", "143.50 slug", US).typed == "143.50"

@@ -13,6 +13,7 @@ from commands import command
 import impact88
 from cases import CRASH, FILES, IMPOSSIBLE, INTERSECTION, REAR_END, RECORDER
 from impact88.cases.case import Case
+from impact88.cases.units import View
 from impact88.errors import UserError
 from impact88.report.answers import ALL, ask
 from impact88.report.rounding import decimals_in, round_number
@@ -50,6 +51,12 @@ def test_what_a_file_leaves_open_is_reconstructed(text: str, expected: dict[str,
     assert answer.asked == "reconstruct"
     assert answer.possible
     assert {name: answer.found[name].text for name in expected} == expected
+
+
+def test_meaning_of_a_heading_has_its_zero() -> None:
+    meaning = "heading angle of A from the x axis; A faces TA + 180"
+    assert View().meaning("TA") == View(axes="sae").meaning("TA") == meaning
+    assert View(headings="compass").meaning("TA") == "heading angle of A clockwise from north"
 
 
 @pytest.mark.parametrize("text", [INTERSECTION, CRASH])
