@@ -185,6 +185,14 @@ def test_a_case_with_other_evidence_is_run_by_its_answer(
     assert (outcome.status, page in outcome.out) == (0 if page else 2, True)
 
 
+def test_a_scene_file_is_not_written_over_another(folder: Path) -> None:
+    assert command("scene", "planar", "-o", "new.toml", folder=folder).status == 0
+    (folder / "new.toml").write_text("MA = 1", "utf-8")
+    outcome = command("scene", "planar", "-o", "new.toml", folder=folder)
+    assert (outcome.status, "is there already" in outcome.err) == (2, True)
+    assert (folder / "new.toml").read_text("utf-8") == "MA = 1"
+
+
 def test_a_sweep_says_that_limits_are_left_out(folder: Path) -> None:
     sweep = ("solve", "crash.toml", "--sweep", "MU=0:1:2")
     words = "takes the middle of UX, VY, E, not their limits"

@@ -137,7 +137,7 @@ def case_of(args: Args, is_required: bool = True) -> Case:
         case = Case.of({**scene, "title": scene.title, "units": "chapter"}, scene.source)
     elif args.file:
         case = Case.load(args.file, view)
-        if args.units and args.units != case.view.units:
+        if args.units not in ("", case.view.units):
             raise UserError(f"--units {args.units}, but units = {case.view.units}", case.source)
     elif args.set or not is_required:
         case = Case.of({}, "--set", view)

@@ -17,7 +17,10 @@ says where a value comes from. axes = "sae" and headings = "compass" change dire
 
 from __future__ import annotations
 
+import os
+
 from ..cases.scenefile import SIGNS, TEMPLATES, template
+from ..errors import UserError
 from .options import CASE, OUTPUT, Args, case_of
 
 __doc__ = (__doc__ or "").format(
@@ -28,6 +31,8 @@ OPTIONS = (*CASE, OUTPUT)
 
 def main(args: Args) -> None:
     """Print a scene file."""
+    if os.path.exists(args.output):
+        raise UserError("is there already; expected a new file", args.output)
     kind = args.file or "planar"
     if not (args.sample or args.set) and kind.replace("-", "").isalpha():
         print(template(kind, args.units or "us"), end="")

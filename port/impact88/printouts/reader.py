@@ -320,13 +320,15 @@ class _Reader:
         if count:
             slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
             end = before.stop + count
-            marks = {")", "%"} & {CELLS[SLOT_CELLS[owner] + 1].char}
-            ends = [glyph.gap > 0 or glyph.char in marks for glyph in self.glyphs[end : end + 1]]
+            mark = CELLS[SLOT_CELLS[owner] + 1].char
+            ends = [
+                glyph.gap > 0 or glyph.char == mark != "(" for glyph in self.glyphs[end : end + 1]
+            ]
             is_label = any(glyph.char.isalpha() for glyph in glyphs[count : count + 1])
             is_last = not any(CELLS[j].kind == "slot" for j in cells if CELLS[j].row == row)
             slot.is_bounded = all(ends) and (is_last or is_label)
             slots[owner] = slot
-            slot.is_torn = any(b.gap > 0 and a.char not in ",;-" for a, b in pairwise(slot.glyphs))
+            slot.is_torn = any(b.gap > 0 and a.char not in ",;" for a, b in pairwise(slot.glyphs))
             if owner not in MANY and is_last:  # nothing else belongs there
                 rest = glyphs[count:]
                 torn = _count_torn(rest)

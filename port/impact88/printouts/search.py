@@ -284,10 +284,10 @@ class _Search:
     def _count_differing(self, scene: Recovered) -> int:
         """Return the number of results read cleanly that a scene does not explain."""
         mup = scene.inputs["MUP"].printed
-        printed = {name: scene.fields.get(name, "") for name in self.sure}
         count = sum(
-            text not in self.expected[name] and not self.reading.is_cut(name, text)
-            for name, text in printed.items()
+            (text := scene.fields.get(name, "")) not in self.expected[name]
+            and not self.reading.is_cut(name, text)
+            for name in self.sure
         )
         return count + (scene.fields.get("MUP", mup) != mup)
 

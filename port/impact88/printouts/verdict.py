@@ -371,8 +371,8 @@ class Comparison:
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
-        is_many = len([*numbers, *unread]) > MAX_ALTERED
-        is_open = is_many and bool(is_machine_read or unsure or unread)
+        is_open = bool(is_machine_read or unsure or unread)
+        is_open &= len([*numbers, *unread]) > MAX_ALTERED
         is_open |= not is_machine_read and any(
             self.reading.slots[name].is_torn or len(self.reading.readings(name)) > 1
             for name in unsure

@@ -11,7 +11,6 @@ from threading import Thread
 from typing import Any
 
 from ..errors import library
-from .guard import MAX_BODY
 
 HOST = "127.0.0.1"
 THREADS = 8  # requests answered at a time
@@ -64,6 +63,7 @@ def make_server(listener: socket.socket, token: str) -> Any:
     from waitress.server import create_server
 
     from .app import application
+    from .guard import MAX_BODY
 
     # Windows lets programs change what a suffix means, and browsers run no script of another type
     mimetypes.add_type("text/javascript", ".js")
