@@ -399,6 +399,7 @@ def test_a_number_beside_a_reply_is_not_the_replys(note: str) -> None:
     assert single(PAGE.replace(reply, reply + note)).verdict is Verdict.AS_READ
     torn = PAGE.replace(reply, "?- 9.04,0,0")
     assert single(torn).verdict is Verdict.AS_READ
+    assert single(PAGE.replace("?14.52,25.15", "? 4.52,25.15")).verdict is Verdict.INCOMPLETE
     altered = PAGE.replace(reply, "?-29.04,1,0")
     assert single(altered).verdict is Verdict.DIFFERS
 

@@ -15,7 +15,6 @@ def cause_sentences(cause: "Cause") -> list[str]:
     lines += [f"  or: {other}" for other in cause.alternatives]
     rows = f"explains {cause.rows} of {cause.of} rows that disagree in {', '.join(cause.results)}"
     rest = f"; {cause.unexplained} remain unexplained" if cause.unexplained else ""
-    rest += "; others may explain a single row as well" * (cause.of == 1)
     return [*lines, f"  {rows}{rest}"]
 
 

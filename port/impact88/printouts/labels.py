@@ -144,7 +144,7 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
 
 def _note_cost(line: Sequence[Glyph]) -> float:
     """Return the cost that a label of a line is a note's: less where the line lacks labels."""
-    texts = [text for text, *_ in find_labels(line)]
+    texts = [label[0] for label in find_labels(line)]
     rows = Counter(label.row for label in LABELS if label.text in texts)
     best = [row for row, count in rows.items() if count == max(rows.values())]
     size = min((ROW_SIZES[row] for row in best), default=0)
@@ -156,7 +156,7 @@ def _costs_of(labels: Sequence[tuple[str, int, int]]) -> NDArray[np.float64]:
 
     Two of a row that were exchanged cost as much as one.
     """
-    texts = [text for text, *_ in labels]
+    texts = [label[0] for label in labels]
     costs = np.array(
         [[np.inf, *(_label_cost(label.text, text) for label in LABELS)] for text in texts]
     )

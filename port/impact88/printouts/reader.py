@@ -138,8 +138,8 @@ class Reading:
             for j, glyph in self.chars.items()
         )
         numbers = sum(bool(NUMERAL.fullmatch(slot.text)) for slot in self.slots.values())
-        is_enough = numbers >= MIN_NUMBERS and letters >= 2 * MIN_NUMBERS
-        return is_enough and 2 * numbers >= len(self.slots)
+        least = max(MIN_NUMBERS, len(self.slots) / 2)
+        return numbers >= least and letters >= 2 * MIN_NUMBERS
 
     @cached_property
     def is_machine_read(self) -> bool:

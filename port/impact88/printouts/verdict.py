@@ -304,7 +304,9 @@ class Comparison:
                 is_clean = is_exact and all(map(TYPED.fullmatch, texts))
                 kind = Kind.DOUBT
                 if is_clean and not is_same and not self.reading.is_machine_read:
-                    kind = Kind.UNREAD if self.reading.is_cut(reply, reply_text) else Kind.NUMBER
+                    is_cut = any(glyph.gap for glyph in slot.glyphs)  # blanks, perhaps of digits
+                    is_cut |= self.reading.is_cut(reply, reply_text)
+                    kind = Kind.UNREAD if is_cut else Kind.NUMBER
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _words(self) -> tuple[list[Word], list[int]]:
