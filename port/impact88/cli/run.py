@@ -61,8 +61,9 @@ def _scene(args: Args) -> Scene:
         impact = ask(case).scene
         if not impact:
             raise UserError("no impact was found, so there is none to run; see solve", case.source)
-        found = [name for name in SCENE if name in impact and name not in texts]
-        texts |= {name: to_text(impact[name]) for name in (*found, *case.ranges) if name in SCENE}
+        given = texts.keys() - {*case.ranges}  # what has limits is as the impact has it
+        found = [name for name in SCENE if name in impact and name not in given]
+        texts |= {name: to_text(impact[name]) for name in found}
     scene = Scene(texts, None, case.source)
     if found:
         note("run", f"as impact88 solve finds them: {' '.join(found)}")

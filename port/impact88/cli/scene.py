@@ -31,7 +31,7 @@ OPTIONS = (*CASE, OUTPUT)
 
 def main(args: Args) -> None:
     """Print a scene file."""
-    if os.path.exists(args.output):
+    if os.path.isfile(args.output):
         raise UserError("is there already; expected a new file", args.output)
     kind = args.file or "planar"
     if not (args.sample or args.set) and kind.replace("-", "").isalpha():

@@ -356,11 +356,12 @@ class Comparison:
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
 
-        On a page read exactly elsewhere, another word in a label's place differs. Numbers do not
-        where inputs were not read; where more of them differ than an alteration
-        explains, while an input is in doubt or a machine read the page; and on such a page unless
-        each is one digit for another in which the reader does not err elsewhere. A lost sign or
-        point is a doubt there. An angle is open if that with which it enters as a sum is in doubt.
+        On a page read exactly elsewhere, another word in a label's place differs. Numbers are open
+        where an input was not read, or may have lost digits or be several numbers; where more of
+        them differ than an alteration explains, while an input is in doubt, a number was not read
+        or a machine read the page; and on such a page unless each is one digit for another in which
+        the reader does not err elsewhere. A lost sign or point is a doubt there. An angle is open
+        if that with which it enters as a sum is in doubt.
         """
         words = [finding for finding in findings if finding.kind is Kind.MISREAD]
         names = {finding.name for finding in words}

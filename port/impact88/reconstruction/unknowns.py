@@ -22,9 +22,7 @@ from .impacts import AFTER, BEFORE, COEFFICIENTS, IMPULSES, PIVOT, VEHICLES, Arr
 from .known import check_equations, check_moment
 
 RANK_TOL = 1e-10  # relative size of singular values, and of sliding, that is 0
-DETERMINED_TOL = (
-    1e-6  # change of a quantity along open directions that is rounding, over `RANK_TOL`
-)
+DETERMINED_TOL = 1e-6  # change of a quantity along open directions that is rounding
 STATE = (*BEFORE, *IMPULSES)
 MOTION = (*BEFORE, *AFTER)
 CONTACT = ("gn", "VS", "gt_after", "ia", "ib")
