@@ -194,15 +194,15 @@ class Reading:
         return any(0 < extra < math.inf for extra in self.extra_blanks.get(name, ()))
 
     def is_cut(self, name: str, printed: str) -> bool:
-        """Return True for the beginning or the end of a printed number where the rest of it may
-        have been lost."""
+        """Return True for a part of a printed number where the rest of it may have been lost."""
+        if name not in self.slots:
+            return False
         read = LEADING_ZERO.sub("", self.slots[name].text)
         front, end = self.extra_blanks[name]
-        if front > 0 and printed.endswith(read):
-            return True
-        if CUT_NUMBER.match(read) and printed.endswith(read.lstrip("-")):
-            return True
-        return end > 0 and printed.startswith(read)
+        is_part = bool(CUT_NUMBER.match(read))
+        before, after = ".*" * (front > 0 or is_part), ".*" * (end > 0)
+        part = re.escape(read.lstrip("-") if is_part else read)
+        return bool(re.fullmatch(before + part + after, printed))
 
     def span(self) -> tuple[int, int]:
         """Return the offsets of the first and after the last character of the page's own."""

@@ -207,77 +207,82 @@ class _Search:
         """Return the scenes in which another value of one clean input explains all results.
 
         A single result that differs is not explained so. A slip in what was read explains first,
-        then a value that is not longer, then one that a line cut at its end has the beginning of.
-        Of two angles that enter only as a sum, either explains as much.
+        then a value that is not longer, then one from which what was read may have been cut.
         """
         if self._count_differing(scene) < MIN_RESULTS:
             return []
-        edits = [edit for name in self.clean for edit in self._edits(scene.inputs[name])]
+        read = {name: scene.inputs[name] for name in self.clean}
+        edits = [edit for option in read.values() for edit in self._edits(option)]
         if scenes := self._explain(scene, edits):
             return scenes
-        texts = {name: scene.inputs[name].printed for name in self.clean}
-        read = {name: Decimal(text) for name, text in texts.items()}
-        extra = self.reading.extra_blanks
-        ends = [name for name in read if name in extra and extra[name][1] > 0]
-        longer = {name: [read[name].scaleb(k) for k in range(MAX_DIGITS)] for name in ends}
-        options = self._vary(scene, read, 0)
-        options += self._vary(scene, self._find_least(scene, longer), MAX_DIGITS)
+        scaled = [
+            _option(name, Decimal(option.printed).scaleb(k))
+            for name, option in read.items()
+            for k in range(MAX_DIGITS)
+            if any(self._lost_digits(name))
+        ]
+        options = self._vary(scene, read, is_cut=False)
+        options += self._vary(scene, self._find_least(scene, scaled), is_cut=True)
         is_typable = [
-            len(option.printed) <= len(texts[option.name])
-            or option.printed.startswith(texts[option.name])
+            len(option.printed) <= len(read[option.name].printed)
+            or self.reading.is_cut(option.name, option.printed)
             for option in options
         ]
         return self._explain(scene, [*compress(options, is_typable)])
 
-    def _vary(self, scene: Recovered, values: dict[str, Decimal], digits: int) -> list[Option]:
+    def _lost_digits(self, name: str) -> list[int]:
+        """Return how many digits a number may have lost before and after what was read."""
+        return [MAX_DIGITS * (extra > 0) for extra in self.reading.extra_blanks.get(name, (0, 0))]
+
+    def _vary(
+        self, scene: Recovered, values: Mapping[str, Option], *, is_cut: bool
+    ) -> list[Option]:
         """Return the values of some inputs by which the results cost least.
 
         Each place is found in turn, from that of the first digit to that of the last; of a number
-        that may have been cut the further ones, until there are as many digits.
+        that may have been cut, also the places beyond.
         """
         places = {}
-        for name, value in values.items():
-            first, last = value.adjusted(), int(value.as_tuple().exponent)
+        for name, option in values.items():
+            value = Decimal(option.printed)
+            front, end = self._lost_digits(name) if is_cut else (0, 0)
+            first = value.adjusted() + front
             first = min(first, TENS) if name in ANGLES else first
-            places[name] = range(first - digits + 1, last) if digits else range(last, first + 1)
+            places[name] = range(int(value.as_tuple().exponent) - end, first + 1)
         for place in range(MAX_DIGITS, -2 * MAX_DIGITS, -1):
             unit = Decimal(1).scaleb(place)
-            varied = {
-                name: [value + step * unit for step in STEPS]
-                for name, value in values.items()
+            changes = [
+                _option(name, Decimal(option.printed) + step * unit)
+                for name, option in values.items()
                 if place in places[name]
-            }
-            values = values | self._find_least(scene, varied)
-        return [_option(name, value) for name, value in values.items()]
+                for step in STEPS
+            ]
+            values = {**values, **self._find_least(scene, changes)}
+        return [*values.values()]
 
-    def _find_least(
-        self, scene: Recovered, values: Mapping[str, Sequence[Decimal]]
-    ) -> dict[str, Decimal]:
-        """Return the value of each input by which the results cost least, the first of equals."""
-        changes = [_option(name, value) for name, column in values.items() for value in column]
+    def _find_least(self, scene: Recovered, changes: list[Option]) -> dict[str, Option]:
+        """Return the change of each input by which the results cost least, the first of equals."""
         if not changes:
             return {}
         # the least last, which the dictionary keeps of each name
-        order = np.argsort(self._run(scene.inputs, changes)[1], kind="stable")[::-1].tolist()
-        return {changes[k].name: Decimal(changes[k].printed).normalize() for k in order}
+        order = np.argsort(self._run(scene.inputs, changes)[2], kind="stable")[::-1].tolist()
+        return {changes[k].name: changes[k] for k in order}
 
     def _explain(self, scene: Recovered, options: list[Option]) -> list[Recovered]:
-        """Return the scenes with one of some changes that explain all results, by input."""
-        base = {name: Decimal(scene.inputs[name].printed) for name in self.clean}
-        scenes = self.replay(scene.inputs, options, len(INPUTS)) if options else []
-        scenes = [other for other in scenes if not self._count_differing(other)]
+        """Return the scenes with one of some changes that explain all results, by input.
+
+        Of two angles that enter only as a sum, either explains as much.
+        """
+        read = {name: Decimal(scene.inputs[name].printed) for name in self.clean}
         partners = [
-            _option(partner, base[partner] + Decimal(option.printed) - base[option.name])
-            for option in (other.inputs[other.changed] for other in scenes)
-            if (partner := PARTNERS.get(option.name, "")) in base
+            _option(partner, read[partner] + Decimal(option.printed) - read[option.name])
+            for option in options
+            if (partner := PARTNERS.get(option.name, "")) in read
         ]
-        if partners:
-            others = self.replay(scene.inputs, partners, len(partners))
-            scenes += [other for other in others if not self._count_differing(other)]
-        scenes.sort(key=lambda other: other.cost)
         by_input: dict[str, Recovered] = {}
-        for other in scenes:
-            if other.cost <= scenes[0].cost + 2 * SLIGHT:
+        for other in self.replay(scene.inputs, options + partners, len(NAMES)):
+            least = next(iter(by_input.values()), other)
+            if not self._count_differing(other) and other.cost <= least.cost + 2 * SLIGHT:
                 by_input.setdefault(other.changed, other)
         return [*by_input.values()]
 
@@ -295,48 +300,44 @@ class _Search:
         self, inputs: Mapping[str, Option], changes: list[Option], count: int = 1
     ) -> list[Recovered]:
         """Return the scenes that inputs have with each of some changes, the cheapest first."""
-        run, mismatch, mus = self._run(inputs, changes)
+        scenes, run, mismatch = self._run(inputs, changes)
         costs = mismatch + [change.cost - inputs[change.name].cost for change in changes]
-        scenes = []
-        for k in np.argsort(costs, kind="stable")[:count].tolist():
-            changed = {**inputs, changes[k].name: changes[k]}
-            changed["MUP"] = changed["MUP"]._replace(typed=mus[k])
-            scenes.append(
-                Recovered(
-                    changed, float(mismatch[k]), run.texts(k), str(run.endings[k]), changes[k].name
-                )
+        return [
+            Recovered(
+                scenes[k], float(mismatch[k]), run.texts(k), str(run.endings[k]), changes[k].name
             )
-        return scenes
+            for k in np.argsort(costs, kind="stable")[:count].tolist()
+        ]
 
     def _run(
         self, inputs: Mapping[str, Option], changes: list[Option]
-    ) -> tuple[Outcomes, NDArray[np.float64], list[str]]:
-        """Return what the program prints with each of some changes, the cost of the results, and
-        the typed MU.
+    ) -> tuple[list[dict[str, Option]], Outcomes, NDArray[np.float64]]:
+        """Return the scenes with each of some changes, what the program prints for them, and what
+        their results cost.
 
         Line 400 may turn the sign of MU: where another is printed than was read, it is typed
         the other way.
         """
-        columns = {name: [option.typed] * len(changes) for name, option in inputs.items()}
-        read = np.array([inputs["MUP"].printed.encode()] * len(changes), TEXT)
-        for k, change in enumerate(changes):
-            columns[change.name][k] = change.typed
-            if change.name == "MUP":
-                read[k] = change.printed.encode()
-        run = self.program.run({scene_name(name): texts for name, texts in columns.items()})
+        scenes = [{**inputs, change.name: change} for change in changes]
+        run = self._print(scenes)
+        read = np.array([scene["MUP"].printed.encode() for scene in scenes], TEXT)
         mup = run.printed("MUP")
-        mus = columns["MUP"]
         rows = np.flatnonzero((mup != read) & (read != b"0") & (mup != b"")).tolist()
+        for k in rows:
+            option = scenes[k]["MUP"]
+            scenes[k]["MUP"] = option._replace(typed=opposite(option.typed))
         if rows:
-            for k in rows:
-                mus[k] = opposite(mus[k])
-            turned = {scene_name(name): [texts[k] for k in rows] for name, texts in columns.items()}
-            run.fields[rows], run.endings[rows] = self.program.run(turned)
+            run.fields[rows], run.endings[rows] = self._print([scenes[k] for k in rows])
             mup = run.printed("MUP")
         mismatch = CONTRADICTED * ((mup != read) & (mup != b""))
         for name, costs in self.expected.items():
             mismatch += _result_costs(run.printed(name), costs)
-        return run, mismatch, mus
+        return scenes, run, mismatch
+
+    def _print(self, scenes: Sequence[Mapping[str, Option]]) -> Outcomes:
+        """Return what the program prints for scenes."""
+        columns = {name: [scene[name].typed for scene in scenes] for name in (*INPUTS, "M")}
+        return self.program.run({scene_name(name): texts for name, texts in columns.items()})
 
 
 def _option(name: str, value: Decimal) -> Option:
@@ -382,16 +383,13 @@ def unseen_digits(recovered: Recovered, program: Listing) -> dict[str, int]:
     dict of str to int
         Digits of which another one leaves all results as they are, by input; none are left out.
     """
-    names: list[str] = []
-    columns: dict[str, list[str]] = {name: [] for name in recovered.scene}
-    for name in map(scene_name, INPUTS):
-        text = recovered.scene[name]
-        for k, char in enumerate(text.partition("E")[0]):
-            if char.isdigit():
-                other = text[:k] + str((int(char) + 1) % 10) + text[k + 1 :]
-                names.append(name)
-                for key, typed in {**recovered.scene, name: other}.items():
-                    columns[key].append(typed)
-    run = program.run(columns)
+    changes = [
+        (name, text[:k] + str((int(text[k]) + 1) % 10) + text[k + 1 :])
+        for name, text in recovered.scene.items()
+        for k in range(len(text.partition("E")[0]))
+        if name != "M" and text[k].isdigit()
+    ]
+    scenes = [{**recovered.scene, name: text} for name, text in changes]
+    run = program.run({name: [scene[name] for scene in scenes] for name in recovered.scene})
     same = np.all([run.printed(n) == recovered.fields.get(n, "").encode() for n in RESULTS], axis=0)
-    return dict(Counter(compress(names, same)))
+    return dict(Counter(name for (name, _), is_same in zip(changes, same, strict=True) if is_same))
