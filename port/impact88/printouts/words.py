@@ -40,7 +40,6 @@ SENTENCES = {
     Kind.FOREIGN: "{read}: the program does not print this",
     Kind.ROW_LOST: "the row {name} is missing",
     Kind.ROW_TWICE: "the row {name} is printed twice",
-    Kind.TWICE: "{name} is printed twice, once more as {read}",
     Kind.DISORDER: "the row {name} is out of order",
 }
 MACHINE_READ = "the text given differs; look at the paper: characters of this page were misread"
