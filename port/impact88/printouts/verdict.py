@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from types import MappingProxyType
+from typing import Any
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import LOOKALIKES, Glyph, chars_of, plain_char
@@ -90,21 +91,27 @@ def judge(
 def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) -> Verification:
     """Return the verdict on one printout. Parameters as for `judge`."""
     scenes, missing = find_scenes(reading, given, program)
-    if not scenes:
-        return _without_scene(reading, missing)
-    best = scenes[0]
-    findings, comparison = _compare(reading, best, given, program)
-    if len(scenes) > 1:
-        findings = _either(findings, comparison, scenes)
+    recovered: dict[str, Any] = {}
+    if scenes:
+        best = scenes[0]
+        findings, comparison = _compare(reading, best, given, program)
+        if len(scenes) > 1:
+            findings = _either(findings, comparison, scenes)
+        recovered["scene"] = best.scene
+        recovered["unseen"] = unseen_digits(best, program)
+        recovered["page"] = tuple(print_page(best.fields, comparison.typed_replies()))
+    else:
+        due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
+        comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
+        findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
+        findings += comparison.text_findings()
     verification = Verification(
         verdict_of(findings),
-        best.scene,
-        comparison.numbers,
-        tuple(sorted(findings, key=lambda finding: finding.start)),
-        unseen_digits(best, program),
-        page=tuple(print_page(best.fields, comparison.typed_replies())),
+        findings=tuple(sorted(findings, key=lambda finding: finding.start)),
+        numbers={name: n for name, n in comparison.numbers.items() if n.read or n.printed},
         text=reading.text,
         span=reading.span(),
+        **recovered,
     )
     if verification.verdict is not Verdict.DIFFERS:
         return verification
@@ -118,15 +125,12 @@ def _either(
 ) -> list[Finding]:
     """Return the findings with the inputs of scenes, each of which alone explains the page: as one
     of several if they were read cleanly and to their ends, else as open."""
+    reading = comparison.reading
     printed = {scene.changed: scene.fields[scene.changed] for scene in scenes}
-    others = [finding for finding in findings if finding.name not in printed]
-    is_sure = any(f.kind is Kind.NUMBER for f in findings if f not in others)
-    is_sure &= not any(
-        comparison.reading.is_cut(name, text) or comparison.reading.is_apart(name)
-        for name, text in printed.items()
-    )
-    kind = Kind.EITHER if is_sure else Kind.OPEN
-    return others + [
+    is_cut = any(reading.is_cut(n, text) or reading.is_apart(n) for n, text in printed.items())
+    is_sure = any(f.kind is Kind.NUMBER and f.name in printed for f in findings)
+    kind = Kind.EITHER if is_sure and not is_cut else Kind.OPEN
+    return [finding for finding in findings if finding.name not in printed] + [
         comparison.number_finding(kind, name)._replace(printed=text)
         for name, text in printed.items()
     ]
@@ -148,21 +152,6 @@ def _compare(
 def _without_place(finding: Finding) -> tuple[Kind, str, str]:
     """Return what a finding is, wherever it is."""
     return finding.kind, finding.name, "".join(finding.read.upper().split())
-
-
-def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
-    """Return the verdict on a printout that lacks inputs."""
-    due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
-    comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
-    findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
-    findings += comparison.text_findings()
-    return Verification(
-        verdict_of(findings),
-        findings=tuple(sorted(findings, key=lambda finding: finding.start)),
-        numbers={name: comparison.numbers[name] for name in due if name in reading.slots},
-        text=reading.text,
-        span=reading.span(),
-    )
 
 
 class Comparison:

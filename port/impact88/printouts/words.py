@@ -17,7 +17,8 @@ TITLES = {
 }
 SUMMARIES = {
     Verdict.IDENTICAL: (
-        "all {count} printed numbers{labels} are what the program prints, digit for digit"
+        "all {count} printed numbers, and all else that was read, are what the program prints, "
+        "character by character"
     ),
     Verdict.AS_READ: (
         "what was read exactly of {count} printed numbers is what the program prints; the rest is "
@@ -98,11 +99,8 @@ def _summary(verification: Verification) -> str:
     is_text = any(finding.read for finding in verification.findings)
     if verification.verdict is Verdict.INCOMPLETE and not is_text:
         return MISSING
-    has_replies = "?" in verification.text[slice(*verification.span)]
-    return SUMMARIES[verification.verdict].format(
-        count=sum(bool(number.read) for number in verification.numbers.values()),
-        labels=", their labels and replies" if has_replies else " and their labels",
-    )
+    count = sum(bool(number.read) for number in verification.numbers.values())
+    return SUMMARIES[verification.verdict].format(count=count)
 
 
 def _findings(verification: Verification) -> Iterator[str]:
