@@ -17,8 +17,7 @@ TITLES = {
 }
 SUMMARIES = {
     Verdict.IDENTICAL: (
-        "all {count} printed numbers, and all else that was read, are what the program prints, "
-        "character by character"
+        "all {count} printed numbers, and all else that was read, are what the program prints"
     ),
     Verdict.AS_READ: (
         "what was read exactly of {count} printed numbers is what the program prints; the rest is "
