@@ -228,7 +228,7 @@ class Comparison:
         return Number(finding.printed, finding.read, finding.start, finding.stop)
 
     def findings(self) -> list[Finding]:
-        """Return all that was not read as the program prints it, in the order of the text."""
+        """Return all that was not read as the program prints it."""
         findings = [
             self.number_finding(kind, name)
             for name in self.numbers
@@ -241,7 +241,7 @@ class Comparison:
             is_cut = self.ending.startswith(self.reading.ending)
             kind = Kind.UNREAD if is_cut else Kind.LABEL
             findings.append(self.finding(kind, "message", [], self.ending, len(CELLS)))
-        return sorted(findings, key=lambda finding: finding.start)
+        return findings
 
     def text_findings(self) -> list[Finding]:
         """Return the words, rows and other text that are not as the program prints them."""
@@ -270,17 +270,17 @@ class Comparison:
         slot, text = self.reading.slots.get(name), self.fields.get(name, "")
         if not slot:
             return Kind.UNREAD
-        read = slot.text
+        read, is_machine_read = slot.text, self.reading.is_machine_read
         if not text and slot.label != "exact":
             return Kind.FOREIGN
         if read == text and slot.is_clean:
             return None
-        if text == read or text in readings(read):
+        if text in readings(read) or (is_machine_read and read == text.replace(".", "")):
             return Kind.DOUBT
         if slot.is_clean:
-            is_end = slot.is_bounded and not self.reading.is_cut(name, text)
-            return Kind.NUMBER if is_end else Kind.UNREAD
-        return Kind.DOUBT if self.reading.is_machine_read and _is_alike(read, text) else Kind.UNREAD
+            is_whole = slot.is_bounded and not self.reading.is_cut(name, text)
+            return Kind.NUMBER if is_whole else Kind.UNREAD
+        return Kind.DOUBT if is_machine_read and _is_alike(read, text) else Kind.UNREAD
 
     def typed_replies(self) -> dict[str, str]:
         """Return the replies at the prompts that the scene gives."""
@@ -335,8 +335,6 @@ class Comparison:
         if is_exact and all(map(_is_other_word, words)):
             findings = [f._replace(kind=Kind.LABEL) if f in words else f for f in findings]
         is_machine_read = self.reading.is_machine_read
-        if is_machine_read:
-            findings = [f._replace(kind=Kind.DOUBT) if _is_slight(f) else f for f in findings]
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
         unsure = {finding.name for finding in findings if _is_unsure(finding)}
@@ -347,7 +345,7 @@ class Comparison:
             for name in unsure
         )
         is_open |= any(f.name in INPUTS for f in unread) or any(map(self.reading.is_apart, INPUTS))
-        swaps = [*map(_swap, numbers), *filter(None, map(_swap, unread))]
+        swaps = [*map(_swap, numbers)]
         is_open |= is_machine_read and ("" in swaps or len({*swaps}) < len(swaps))
         open_numbers = [f for f in numbers if is_open or PARTNERS.get(f.name) in unsure]
         return [f._replace(kind=Kind.OPEN) if f in open_numbers else f for f in findings]
@@ -394,13 +392,6 @@ def _count_same(read: str, printed: str) -> int:
     """Return how many characters two texts have in common, in order."""
     blocks = SequenceMatcher(None, read, printed).get_matching_blocks()
     return sum(block.size for block in blocks)
-
-
-def _is_slight(finding: Finding) -> bool:
-    """Return True for a number that was read, and differs in nothing but a lost point."""
-    read = "".join(finding.read.split())
-    is_number = finding.kind in (Kind.NUMBER, Kind.UNREAD) and read
-    return bool(is_number) and read == finding.printed.replace(".", "")
 
 
 def _swap(finding: Finding) -> str:
