@@ -43,8 +43,10 @@ def stored_and_printed(text: str, is_angle: bool = False) -> tuple[bytes, str] |
     Returns
     -------
     tuple of bytes and str, or None
-        None if the number is too large.
+        None for another text, and for a number that is too large.
     """
+    if not TYPED.fullmatch(text):
+        return None
     try:
         value = printed_value = rounded(decimaltext.number(text))
         if is_angle:
@@ -90,17 +92,13 @@ def opposite(text: str) -> str:
 
 def is_same_value(first: str, second: str) -> bool:
     """Return True if the Apple stores two typed texts as the same number."""
-    entries = [
-        stored_and_printed(text) if TYPED.fullmatch(text) else None for text in (first, second)
-    ]
-    return entries[0] is not None and entries[1] is not None and entries[0][0] == entries[1][0]
+    bits = [entry and entry[0] for entry in map(stored_and_printed, (first, second))]
+    return bits[0] is not None and bits[0] == bits[1]
 
 
 def as_printed(text: str) -> str:
     """Return a number that people wrote as Applesoft prints it; another text unchanged."""
-    if not RETYPED.search(text) or not TYPED.fullmatch(text):
-        return text
-    entry = stored_and_printed(text)
+    entry = stored_and_printed(text) if RETYPED.search(text) else None
     return entry[1] if entry and Decimal(entry[1]) == Decimal(text) else text
 
 

@@ -113,8 +113,11 @@ class CopyListing(Listing):
     def _converted(self) -> set[str]:
         """Inputs of which the copy prints another number than was typed."""
         page = self.run({**dict.fromkeys(sample(1), PROBE), "M": "6"}).texts(0)
-        numbers = {name: abs(float(page[name])) for name in INPUTS if name in page}
-        return {name for name, number in numbers.items() if abs(number - float(PROBE)) > CONVERTED}
+        return {
+            name
+            for name in INPUTS
+            if abs(abs(float(page.get(name, PROBE))) - float(PROBE)) > CONVERTED
+        }
 
     def spellings(self, name: str, printed: str) -> tuple[str, ...]:
         """Return texts that may have been typed for a printed input, none if it was converted."""

@@ -20,8 +20,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..program.replay import FINAL_SPINS
 from .costs import ALIKE, CONTRADICTED, SLIGHT, UNPAIRED, WRONG
-from .numerals import MAX_DIGITS, TYPED, opposite, readings, slips, stored_and_printed
+from .numerals import MAX_DIGITS, opposite, readings, slips, stored_and_printed
 from .page import ANGLES, INPUTS, NAMES, PARTNERS, RESULTS
 from .programs import Listing, Outcomes
 from .reader import Reading
@@ -36,7 +37,6 @@ TINY = 1e-38
 """Less than any number that the Apple prints."""
 TEXT = "S16"
 CIRCLE = Decimal(360)
-FINAL_SPINS = ("WAF", "WBF")
 
 Texts = dict[str, str]
 
@@ -114,8 +114,8 @@ def find_scenes(
         return [], missing
     spins = [reading.slots[name].label for name in FINAL_SPINS if name in reading.slots]
     has_spins = spins == ["exact", "exact"]  # M = 4 prints none
-    ms = {given["M"]: 0.0} if "M" in given else {"6": 0.0} if has_spins else {"4": 0.0, "6": ALIKE}
-    columns["M"] = [Option("M", m, m, cost) for m, cost in ms.items()]
+    ms = [given["M"]] if "M" in given else ["6"] if has_spins else ["4", "6"]
+    columns["M"] = [Option("M", m, m, ALIKE * k) for k, m in enumerate(ms)]
     search = _Search(reading, given, program)
     options = [option for options in columns.values() for option in options]
     first = {name: options[0] for name, options in columns.items()}
@@ -134,7 +134,7 @@ def _options(
     """Return what an input may be, the cheapest first: as printed, and as typed at the prompt."""
     texts = dict(reading.readings(name))
     reply = reading.replies.get(name, "") or ("" if texts else given.get(scene_name(name), ""))
-    entry = stored_and_printed(reply, name in ANGLES) if TYPED.fullmatch(reply) else None
+    entry = stored_and_printed(reply, name in ANGLES)
     for text in [entry[1]] if entry else readings(reply):
         texts[text] = min(texts.get(text, ALIKE), ALIKE)
     options: list[Option] = []

@@ -13,6 +13,7 @@ from difflib import SequenceMatcher
 from types import MappingProxyType
 from typing import Any
 
+from ..program.replay import FINAL_SPINS
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import LOOKALIKES, Glyph, chars_of, plain_char
 from .numerals import TYPED, as_printed, is_same_value, readings
@@ -35,7 +36,7 @@ from .page import (
 )
 from .programs import Listing
 from .reader import CUT_NUMBER, Reading, read_printouts
-from .search import FINAL_SPINS, Recovered, find_scenes, scene_name, unseen_digits
+from .search import Recovered, find_scenes, scene_name, unseen_digits
 
 MAX_ALTERED = 2
 """Numbers that differ, beyond which a doubtful input, or the reader, explains them as well."""
