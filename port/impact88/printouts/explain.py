@@ -52,7 +52,7 @@ def explain(verification: Verification) -> str:
     """
     findings = [finding for finding in verification.findings if finding.kind is Kind.NUMBER]
     read = {finding.name: finding.read for finding in findings if finding.name in RESULTS}
-    if len(read) >= MIN_NUMBERS and verification.scene:
+    if len(read) >= MIN_NUMBERS:
         for cause, fields, error in _causes(verification):
             misses = [
                 name

@@ -10,7 +10,7 @@ from itertools import product
 from ..apple.applesoft import decimaltext
 from ..apple.applesoft.errorcodes import ApplesoftError
 from ..apple.applesoft.real import divide, multiply, rounded, to_stored
-from .costs import ALIKE, SLIGHT, WRONG
+from .costs import ALIKE, SLIGHT
 from .glyphs import LOOKALIKES
 
 PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0-9]{1,2})?")
@@ -114,11 +114,8 @@ def readings(chars: str) -> dict[str, float]:
     for char in chars:
         options = [(char, 0.0)] if char in "0123456789.-E" else []
         if not options or char == "E":
-            for digit in NUMBER_CHARS:
-                if char in LOOKALIKES[digit]:
-                    options.append((digit, ALIKE))
-                elif char == "?":
-                    options.append((digit, ALIKE if digit.isdigit() else 2 * ALIKE))
+            alike = [digit for digit in NUMBER_CHARS if char in LOOKALIKES[digit] + "?"]
+            options += [(digit, ALIKE) for digit in alike]
             options.append(("", 2 * ALIKE))
         elif char in ".-":
             options.append(("", 3 * ALIKE))
@@ -135,20 +132,19 @@ def readings(chars: str) -> dict[str, float]:
 
 
 @lru_cache(maxsize=1000)
-def slips(text: str) -> list[tuple[str, float]]:
-    """Return the printed numbers one slip from another, with the cost of the slip.
+def slips(text: str) -> list[str]:
+    """Return the printed numbers one slip from another.
 
     A slip replaces, loses, adds or exchanges characters.
     """
-    costs: dict[str, float] = {}
+    variants = []
     for k in range(len(text) + 1):
         before, char, after = text[:k], text[k : k + 1], text[k + 1 :]
-        variants = [(before + new + char + after, WRONG + SLIGHT) for new in NUMBER_CHARS]
-        if char:
-            variants += [(before + new + after, WRONG) for new in NUMBER_CHARS]
-            variants.append((before + after, WRONG + SLIGHT))
-            variants.append((before + after[:1] + char + after[1:], WRONG + SLIGHT))
-        for variant, cost in variants:
-            if PRINTED.fullmatch(variant) and as_printed(variant) == variant != text:
-                costs.setdefault(variant, cost)
-    return [*costs.items()]
+        variants += [before + new + after for new in NUMBER_CHARS]
+        variants += [before + after, before + after[:1] + char + after[1:]]
+        variants += [before + new + char + after for new in NUMBER_CHARS]
+    return [
+        variant
+        for variant in dict.fromkeys(variants)
+        if PRINTED.fullmatch(variant) and as_printed(variant) == variant != text
+    ]

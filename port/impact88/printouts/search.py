@@ -120,11 +120,10 @@ def find_scenes(
     options = [option for options in columns.values() for option in options]
     first = {name: options[0] for name, options in columns.items()}
     best = search.improve(search.replay(first, [first["M"]])[0], options)
-    if best.mismatch >= CONTRADICTED:
-        repaired = search.improve(best, options + search.slips(best))
-        # slips are believed only where they explain most of what differs
-        if 2 * repaired.mismatch <= best.mismatch:
-            best = repaired
+    repaired = search.improve(best, options + search.slips(best))
+    # slips are believed only where they explain most of what differs
+    if 2 * repaired.mismatch <= best.mismatch:
+        best = repaired
     return search.replace(best) or [best], []
 
 
@@ -188,9 +187,9 @@ class _Search:
         slot = self.reading.slots.get(option.name)
         limit = max(CIRCLE, abs(Decimal(option.printed))) if option.name in ANGLES else math.inf
         return [
-            Option(option.name, text, text, cost + doubt)
+            Option(option.name, text, text, WRONG + doubt)
             for read in dict.fromkeys((option.printed, slot.text if slot else ""))
-            for text, cost in slips(read)
+            for text in slips(read)
             if abs(Decimal(text)) <= limit
         ]
 

@@ -298,14 +298,15 @@ class Comparison:
             texts = [self.reading.replies.get(name, "") for name in REPLIES[reply]]
             is_same = all(map(is_same_value, texts, reply_text.split(",")))
             is_exact = slot.label == "exact" and not slot.is_torn
-            if not is_same or not is_exact:
-                is_clean = is_exact and all(map(TYPED.fullmatch, texts))
+            if is_same and is_exact:
+                continue
+            is_clean = is_exact and all(map(TYPED.fullmatch, texts))
+            is_cut = any(glyph.gap for glyph in slot.glyphs)  # blanks, perhaps of digits
+            is_cut |= self.reading.is_cut(reply, reply_text)
+            kind = Kind.UNREAD if is_cut else Kind.NUMBER
+            if is_same or not is_clean or self.reading.is_machine_read:
                 kind = Kind.DOUBT
-                if is_clean and not is_same and not self.reading.is_machine_read:
-                    is_cut = any(glyph.gap for glyph in slot.glyphs)  # blanks, perhaps of digits
-                    is_cut |= self.reading.is_cut(reply, reply_text)
-                    kind = Kind.UNREAD if is_cut else Kind.NUMBER
-                yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
+            yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
     def _repeated_findings(self) -> Iterator[Finding]:
         """Yield the rows that were printed twice, or out of order, and the numbers that were

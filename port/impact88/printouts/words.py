@@ -142,13 +142,11 @@ def _table(verification: Verification) -> Iterator[str]:
         Kind.UNREAD: "not read",
         Kind.DOUBT: "doubt",
     }
-    rows = [("", "as read", "the program", "")]
+    yield f"  {'':5} {'as read':>15} {'the program':>15}"
     for name, number in verification.numbers.items():
         read = " ".join(number.read.split())
-        rows.append((name, read, number.printed, words.get(kinds.get(name, Kind.LOST), "")))
-    widths = [max(len(row[k]) for row in rows) for k in range(3)]
-    for name, read, printed, word in rows:
-        yield f"  {name:{widths[0]}} {read:>{widths[1]}} {printed:>{widths[2]}}  {word}".rstrip()
+        word = words.get(kinds.get(name, Kind.LOST), "")
+        yield f"  {name:5} {read:>15} {number.printed:>15}  {word}".rstrip()
 
 
 def unseen_lines(verification: Verification) -> Iterator[str]:
