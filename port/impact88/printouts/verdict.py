@@ -6,6 +6,7 @@ the text. The verdict follows from the findings by `findings.VERDICTS`.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -339,7 +340,7 @@ class Comparison:
         is_machine_read = self.reading.is_machine_read
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
-        unsure = {finding.name for finding in findings if _is_unsure(finding)}
+        unsure = {f.name for f in findings if f.kind is Kind.DOUBT and self._is_unsure(f.name)}
         is_open = bool(is_machine_read or unsure or unread)
         is_open &= len([*numbers, *unread]) > MAX_ALTERED
         is_open |= not is_machine_read and any(
@@ -347,10 +348,16 @@ class Comparison:
             for name in unsure
         )
         is_open |= any(f.name in INPUTS for f in unread) or any(map(self.reading.is_apart, INPUTS))
+        is_open |= any(f.read and self.reading.extra_blanks[f.name][1] == math.inf for f in unread)
         swaps = [*map(_swap, numbers)]
         is_open |= is_machine_read and ("" in swaps or len({*swaps}) < len(swaps))
         open_numbers = [f for f in numbers if is_open or PARTNERS.get(f.name) in unsure]
         return [f._replace(kind=Kind.OPEN) if f in open_numbers else f for f in findings]
+
+    def _is_unsure(self, name: str) -> bool:
+        """Return True for an input read with doubt, other than one that people wrote otherwise."""
+        slot = self.reading.slots[name]
+        return name in INPUTS and (not slot.is_clean or bool(CUT_NUMBER.match(slot.text)))
 
 
 def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
@@ -376,13 +383,6 @@ def _is_other_word(finding: Finding) -> bool:
     same = _count_same(read, printed)
     is_word = read.isascii() and read.isalpha() and same < len(read)
     return is_word and max(len(read), len(printed)) - same >= MIN_LETTERS
-
-
-def _is_unsure(finding: Finding) -> bool:
-    """Return True for an input read with doubt, other than one that people wrote otherwise."""
-    is_respelled = as_printed(finding.read) == finding.printed != finding.read
-    is_sure = is_respelled and not CUT_NUMBER.match(finding.read)
-    return finding.kind is Kind.DOUBT and finding.name in INPUTS and not is_sure
 
 
 def _is_alike(read: str, printed: str) -> bool:
