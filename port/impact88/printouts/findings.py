@@ -35,7 +35,6 @@ class Kind(Enum):
     FOREIGN = "text that the program does not print"
     ROW_LOST = "row not read"
     ROW_TWICE = "row printed twice"
-    TWICE = "number printed twice"
     DISORDER = "row out of order"
 
 
@@ -52,7 +51,6 @@ VERDICTS = MappingProxyType(
         Kind.FOREIGN: Verdict.AS_READ,
         Kind.ROW_LOST: Verdict.AS_READ,
         Kind.ROW_TWICE: Verdict.AS_READ,
-        Kind.TWICE: Verdict.AS_READ,
         Kind.DISORDER: Verdict.AS_READ,
     }
 )

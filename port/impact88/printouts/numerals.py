@@ -73,8 +73,7 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
         if abs(number - value) <= abs(value) * Decimal("5e-8")
     ]
     plain = f"{value:f}"
-    texts += [f"{value.normalize():f}"]
-    texts += [plain + "." * ("." not in plain) + "0" * k for k in (1, 2, 3)]
+    texts += [plain, *(plain + "." * ("." not in plain) + "0" * k for k in (1, 2, 3))]
     by_bits: dict[bytes, str] = {}
     for text in [*texts, printed]:
         short = re.sub(r"^(-?)0\.", r"\1.", text)

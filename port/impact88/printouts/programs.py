@@ -97,21 +97,16 @@ class CopyListing(Listing):
     @cached_property
     def _layouts(self) -> list[re.Pattern[str]]:
         """The copy's pages with and without final spins, with a group for each number."""
-        scenes = [{**sample(1), "M": m} for m in ("6", "4")]
         layouts = []
-        for scene in scenes:
-            page = self.copy.pages(scene)[0]
-            readings = read_printouts(page)
-            slots = [(s.glyphs, name) for r in readings for name, s in r.slots.items()]
-            parts: list[str] = []
-            end = 0
-            for glyphs, name in sorted(slots, key=lambda slot: slot[0][0].offset):
-                if name in NAMES:
-                    start, stop = glyphs[0].offset, glyphs[-1].offset + 1
-                    parts += [re.escape(page[end:start])] if end else []
-                    parts.append(f"(?P<{name}>[-+.E0-9]+)")
-                    end = stop
-            layouts.append(re.compile("".join(parts)))
+        for m in ("6", "4"):
+            page = self.copy.pages({**sample(1), "M": m})[0]
+            slots = {name: slot for r in read_printouts(page) for name, slot in r.slots.items()}
+            starts = {slots[name].glyphs[0].offset: name for name in NAMES if name in slots}
+            pattern, end = "", min(starts, default=0)
+            for start, name in sorted(starts.items()):
+                pattern += re.escape(page[end:start]) + f"(?P<{name}>[-+.E0-9]+)"
+                end = slots[name].glyphs[-1].offset + 1
+            layouts.append(re.compile(pattern))
         return layouts
 
     @cached_property

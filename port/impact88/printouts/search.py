@@ -218,8 +218,7 @@ class _Search:
         scaled = [
             _option(name, Decimal(option.printed).scaleb(k))
             for name, option in read.items()
-            for k in range(MAX_DIGITS)
-            if any(self._lost_digits(name))
+            for k in range(self._lost_digits(name)[1] + 1)
         ]
         options = self._vary(scene, read, is_cut=False)
         options += self._vary(scene, self._find_least(scene, scaled), is_cut=True)
@@ -239,22 +238,23 @@ class _Search:
     ) -> list[Option]:
         """Return the values of some inputs by which the results cost least.
 
-        Each place is found in turn, from that of the first digit to that of the last; of a number
-        that may have been cut, also the places beyond.
+        Each place that was read is found in turn, from that of the first digit to that after the
+        last; of a number that may have been cut, each place beyond.
         """
         places = {}
         for name, option in values.items():
             value = Decimal(option.printed)
-            front, end = self._lost_digits(name) if is_cut else (0, 0)
-            first = value.adjusted() + front
-            first = min(first, TENS) if name in ANGLES else first
-            places[name] = range(int(value.as_tuple().exponent) - end, first + 1)
+            value = value.normalize() if is_cut else value
+            first, last = value.adjusted(), int(value.as_tuple().exponent)
+            front, end = self._lost_digits(name)
+            beyond = {*range(first + 1, first + front + 1), *range(last - end, last)}
+            places[name] = beyond if is_cut else {*range(last - 1, first + 1)}
         for place in range(MAX_DIGITS, -2 * MAX_DIGITS, -1):
             unit = Decimal(1).scaleb(place)
             changes = [
                 _option(name, Decimal(option.printed) + step * unit)
                 for name, option in values.items()
-                if place in places[name]
+                if place in places[name] and (place <= TENS or name not in ANGLES)
                 for step in STEPS
             ]
             values = {**values, **self._find_least(scene, changes)}

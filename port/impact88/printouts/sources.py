@@ -96,18 +96,16 @@ def _check_given(verification: Verification, given: Mapping[str, str], name: str
     """Raise UserError for an input that is given, and another on the page."""
     for key, text in given.items():
         number = verification.numbers.get({"MU": "MUP"}.get(key, key))
-        if number and number.read and verification.scene.get(key, text) != text:
-            numbers = (
-                printed_fields(verification.scene),
-                printed_fields({**verification.scene, key: text}),
+        scene = verification.scene
+        if not (scene and number and number.read):
+            continue
+        if printed_fields({**scene, key: text}) != printed_fields(scene):
+            line = verification.line_of(number.start)
+            raise UserError(
+                f"line {line}: the page has {key} {number.read}, but {text} is given; "
+                "give only inputs that the page lacks",
+                name,
             )
-            if numbers[0] != numbers[1]:
-                line = verification.line_of(number.start)
-                raise UserError(
-                    f"line {line}: the page has {key} {number.read}, but {text} is given; "
-                    "give only inputs that the page lacks",
-                    name,
-                )
 
 
 def _texts(given: Mapping[str, Any] | None) -> dict[str, str]:

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from difflib import SequenceMatcher
 from types import MappingProxyType
+from typing import Any
 
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
-from .glyphs import LOOKALIKES, Glyph, plain_char
+from .glyphs import LOOKALIKES, Glyph, chars_of, plain_char
 from .numerals import TYPED, as_printed, is_same_value, readings
 from .page import (
+    ANGLE_ROW,
     ASTERISKS,
     CELLS,
     INPUTS,
@@ -27,6 +29,7 @@ from .page import (
     ROWS,
     SLOT_CELLS,
     TITLES,
+    Cell,
     print_page,
     printed_rows,
 )
@@ -40,6 +43,20 @@ MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
 WORDS = {*re.findall("[A-Z]+", re.sub("{.*?}", "", " ".join(ROWS)))}
 """The words of the page's labels."""
+
+
+def _words_of(cells: Sequence[Cell]) -> list[list[int]]:
+    """Return the cells of each word or mark of the page."""
+    words: list[list[int]] = []
+    for j, cell in enumerate(cells):
+        if cell.kind == "word":
+            words += [[]] if cell.first else []
+            words[-1].append(j)
+    return words
+
+
+WORD_CELLS = _words_of(CELLS)
+"""The cells of each word or mark of the page."""
 
 
 def judge(
@@ -74,21 +91,27 @@ def judge(
 def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) -> Verification:
     """Return the verdict on one printout. Parameters as for `judge`."""
     scenes, missing = find_scenes(reading, given, program)
-    if not scenes:
-        return _without_scene(reading, missing)
-    best = scenes[0]
-    findings, comparison = _compare(reading, best, given, program)
-    if len(scenes) > 1:
-        findings = _either(findings, comparison, scenes)
+    recovered: dict[str, Any] = {}
+    if scenes:
+        best = scenes[0]
+        findings, comparison = _compare(reading, best, given, program)
+        if len(scenes) > 1:
+            findings = _either(findings, comparison, scenes)
+        recovered["scene"] = best.scene
+        recovered["unseen"] = unseen_digits(best, program)
+        recovered["page"] = tuple(print_page(best.fields, comparison.typed_replies()))
+    else:
+        due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
+        comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
+        findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
+        findings += comparison.text_findings()
     verification = Verification(
         verdict_of(findings),
-        best.scene,
-        comparison.numbers,
-        tuple(sorted(findings, key=lambda finding: finding.start)),
-        unseen_digits(best, program),
-        page=tuple(print_page(best.fields, comparison.typed_replies())),
+        findings=tuple(sorted(findings, key=lambda finding: finding.start)),
+        numbers={name: n for name, n in comparison.numbers.items() if n.read or n.printed},
         text=reading.text,
         span=reading.span(),
+        **recovered,
     )
     if verification.verdict is not Verdict.DIFFERS:
         return verification
@@ -102,15 +125,12 @@ def _either(
 ) -> list[Finding]:
     """Return the findings with the inputs of scenes, each of which alone explains the page: as one
     of several if they were read cleanly and to their ends, else as open."""
+    reading = comparison.reading
     printed = {scene.changed: scene.fields[scene.changed] for scene in scenes}
-    others = [finding for finding in findings if finding.name not in printed]
-    is_sure = any(f.kind is Kind.NUMBER for f in findings if f not in others)
-    is_sure &= not any(
-        comparison.reading.is_cut(name, text) or comparison.reading.is_apart(name)
-        for name, text in printed.items()
-    )
-    kind = Kind.EITHER if is_sure else Kind.OPEN
-    return others + [
+    is_cut = any(reading.is_cut(n, text) or reading.is_apart(n) for n, text in printed.items())
+    is_sure = any(f.kind is Kind.NUMBER and f.name in printed for f in findings)
+    kind = Kind.EITHER if is_sure and not is_cut else Kind.OPEN
+    return [finding for finding in findings if finding.name not in printed] + [
         comparison.number_finding(kind, name)._replace(printed=text)
         for name, text in printed.items()
     ]
@@ -132,39 +152,6 @@ def _compare(
 def _without_place(finding: Finding) -> tuple[Kind, str, str]:
     """Return what a finding is, wherever it is."""
     return finding.kind, finding.name, "".join(finding.read.upper().split())
-
-
-def _without_scene(reading: Reading, missing: Sequence[str]) -> Verification:
-    """Return the verdict on a printout that lacks inputs."""
-    due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
-    comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
-    findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
-    findings += comparison.text_findings()
-    return Verification(
-        verdict_of(findings),
-        findings=tuple(sorted(findings, key=lambda finding: finding.start)),
-        numbers={name: comparison.numbers[name] for name in due if name in reading.slots},
-        text=reading.text,
-        span=reading.span(),
-    )
-
-
-@dataclass
-class Word:
-    """A word or mark of the page: its cells, and the glyphs that were read for them."""
-
-    cells: list[int] = field(default_factory=list)
-    glyphs: list[Glyph] = field(default_factory=list)
-
-    @property
-    def printed(self) -> str:
-        """The printed characters."""
-        return "".join(CELLS[j].char for j in self.cells)
-
-    @property
-    def read(self) -> str:
-        """The characters that were read."""
-        return "".join(glyph.char for glyph in self.glyphs)
 
 
 class Comparison:
@@ -195,15 +182,28 @@ class Comparison:
         self.reading, self.fields, self.scene = reading, fields, scene
         self.places = reading.places()
         self.ending = ending.replace(" ", "")
-        self.words, self.lost_rows = self._words()
-        names = [name for name in NAMES if name in fields or name in reading.slots]
-        if given:  # of a page with results only
-            due = [
-                n for n in names if scene_name(n) not in given and ROW_OF[n] not in self.lost_rows
-            ]
-            names = [name for name in names if name in reading.slots or name in due]
-            self.lost_rows = []
-        self.numbers = {name: self._number(name) for name in names}
+        rows = printed_rows({**fields, **dict.fromkeys(REPLIES, "")})
+        self.words = [
+            word
+            for word in WORD_CELLS
+            if (cell := CELLS[word[0]]).row in rows
+            and (cell.name in fields or cell.name not in NAMES)
+        ]
+        lost = {*rows} - {CELLS[j].row for j in reading.chars} - {ANGLE_ROW}
+        for pair in ({*PROMPTS}, {*ASTERISKS}):  # both may be absent
+            lost -= pair if pair <= lost else set()
+        self.lost_rows = lost
+        self.numbers = {
+            name: self._number(name)
+            for name in NAMES
+            if name in reading.slots
+            or (
+                name in fields
+                and not (given and (scene_name(name) in given or ROW_OF[name] in lost))
+            )
+        }
+        if given:  # a page with results only
+            self.lost_rows = set()
 
     def finding(
         self, kind: Kind, name: str, glyphs: Sequence[Glyph], printed: str, cell: int
@@ -213,10 +213,8 @@ class Comparison:
             start, stop = glyphs[0].offset, glyphs[-1].offset + 1
             return Finding(kind, name, start, stop, self.reading.text[start:stop], printed)
         start, stop = self.reading.span()
-        if before := [j for j in self.places if j < cell]:
-            start = self.places[max(before)][1]
-        if after := [j for j in self.places if j > cell]:
-            stop = self.places[min(after)][0]
+        start = max((place[1] for j, place in self.places.items() if j < cell), default=start)
+        stop = min((place[0] for j, place in self.places.items() if j > cell), default=stop)
         return Finding(kind, name, min(start, stop), max(start, stop), "", printed)
 
     def number_finding(self, kind: Kind, name: str) -> Finding:
@@ -247,26 +245,25 @@ class Comparison:
 
     def text_findings(self) -> list[Finding]:
         """Return the words, rows and other text that are not as the program prints them."""
-        findings = []
-        chars, due = self.reading.chars, {j for word in self.words for j in word.cells}
+        chars, findings = self.reading.chars, []
         foreign = [*self.reading.foreign]
         if not self.ending:  # an error leaves the label of the number that it met
+            due = {j for word in self.words for j in word}
             foreign += [[chars[j]] for j in sorted(chars.keys() - due)]
+        read_rows = {CELLS[j].row for j in chars}
         for word in self.words:
-            if word.read != word.printed:
-                kind = Kind.MISREAD if word.read else Kind.LOST
-                cell = word.cells[0]
-                for run in [run for run in foreign if _touches(run, word.glyphs)]:
-                    word.glyphs = sorted([*word.glyphs, *run], key=lambda glyph: glyph.offset)
+            cell, glyphs = word[0], [chars[j] for j in word if j in chars]
+            printed = "".join(CELLS[j].char for j in word)
+            if chars_of(glyphs) != printed and CELLS[cell].row in read_rows:
+                kind = Kind.MISREAD if glyphs else Kind.LOST
+                for run in [run for run in foreign if _touches(run, glyphs)]:
+                    glyphs = sorted([*glyphs, *run], key=lambda glyph: glyph.offset)
                     foreign.remove(run)
-                findings.append(
-                    self.finding(kind, CELLS[cell].name, word.glyphs, word.printed, cell)
-                )
+                findings.append(self.finding(kind, CELLS[cell].name, glyphs, printed, cell))
         for row in self.lost_rows:
             cell = next(j for j, c in enumerate(CELLS) if c.row == row)
             findings.append(self.finding(Kind.ROW_LOST, TITLES[row], [], TITLES[row], cell))
-        findings += [self.finding(Kind.FOREIGN, "", run, "", 0) for run in foreign]
-        return findings
+        return findings + [self.finding(Kind.FOREIGN, "", run, "", 0) for run in foreign]
 
     def _number_kind(self, name: str) -> Kind | None:
         """Return what a number is that was not read as printed; None for one that was."""
@@ -309,49 +306,18 @@ class Comparison:
                     kind = Kind.UNREAD if is_cut else Kind.NUMBER
                 yield self.finding(kind, reply, slot.glyphs, reply_text, 0)
 
-    def _words(self) -> tuple[list[Word], list[int]]:
-        """Return the words and marks that the program prints, and the rows of which none was read.
-
-        Both prompts may be absent, and both rows of asterisks.
-        """
-        by_row: dict[int, list[Word]] = {}
-        rows = printed_rows({**self.fields, **dict.fromkeys(REPLIES, "")})
-        for j, cell in enumerate(CELLS):
-            is_due = cell.name in self.fields or cell.name not in NAMES
-            if cell.kind != "word" or cell.row not in rows or not is_due:
-                continue
-            words = by_row.setdefault(cell.row, [])
-            if cell.first:
-                words.append(Word())
-            word = words[-1]
-            word.cells.append(j)
-            if j in self.reading.chars:
-                word.glyphs.append(self.reading.chars[j])
-        lost = {row for row, words in by_row.items() if not any(word.glyphs for word in words)}
-        read = [word for row, words in by_row.items() if row not in lost for word in words]
-        for pair in ({*PROMPTS}, {*ASTERISKS}):
-            lost -= pair if pair <= lost else set()
-        return read, sorted(lost)
-
     def _repeated_findings(self) -> Iterator[Finding]:
-        """Yield the numbers that were printed twice, and the rows that were, or out of order.
-
-        A number that was printed once more, cleanly as another, counts if all of its row was.
-        """
-        names = {name for name, _ in self.reading.repeated}
-        rows = {ROW_OF[name] for name in names}
-        full_rows = rows - {ROW_OF[name] for name in NAMES if name not in names}
+        """Yield the rows that were printed twice, or out of order, and the numbers that were
+        printed once more, cleanly as another."""
+        rows = {ROW_OF[name] for name, _ in self.reading.repeated}
         for row, glyph in self.reading.disorder:
-            kind = Kind.ROW_TWICE if row in full_rows else Kind.DISORDER
+            kind = Kind.ROW_TWICE if row in rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
         for name, slot in self.reading.repeated:
             printed = self.fields.get(name, "")
             is_sure = printed and slot.is_clean and slot.is_bounded
-            is_other = is_sure and as_printed(slot.text) != printed
-            if ROW_OF[name] in full_rows and is_other:
+            if is_sure and as_printed(slot.text) != printed:
                 yield self.finding(Kind.NUMBER, name, slot.glyphs, printed, 0)
-            elif ROW_OF[name] not in full_rows:
-                yield self.finding(Kind.TWICE, name, slot.glyphs, printed, 0)
 
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
@@ -388,12 +354,10 @@ class Comparison:
 
 
 def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
-    """Return True for glyphs without a blank before or after those of a word."""
+    """Return True for glyphs right before or after those of a word."""
     if not word:
         return False
-    return (word[0].offset - run[-1].offset == 1 and not word[0].gap) or (
-        run[0].offset - word[-1].offset == 1 and not run[0].gap
-    )
+    return 1 in (word[0].offset - run[-1].offset, run[0].offset - word[-1].offset)
 
 
 def _is_other_word(finding: Finding) -> bool:

@@ -17,7 +17,7 @@ TITLES = {
 }
 SUMMARIES = {
     Verdict.IDENTICAL: (
-        "all {count} printed numbers{labels} are what the program prints, digit for digit"
+        "all {count} printed numbers, and all else that was read, are what the program prints"
     ),
     Verdict.AS_READ: (
         "what was read exactly of {count} printed numbers is what the program prints; the rest is "
@@ -40,7 +40,6 @@ SENTENCES = {
     Kind.FOREIGN: "{read}: the program does not print this",
     Kind.ROW_LOST: "the row {name} is missing",
     Kind.ROW_TWICE: "the row {name} is printed twice",
-    Kind.TWICE: "{name} is printed twice, once more as {read}",
     Kind.DISORDER: "the row {name} is out of order",
 }
 MACHINE_READ = "the text given differs; look at the paper: characters of this page were misread"
@@ -99,11 +98,8 @@ def _summary(verification: Verification) -> str:
     is_text = any(finding.read for finding in verification.findings)
     if verification.verdict is Verdict.INCOMPLETE and not is_text:
         return MISSING
-    has_replies = "?" in verification.text[slice(*verification.span)]
-    return SUMMARIES[verification.verdict].format(
-        count=sum(bool(number.read) for number in verification.numbers.values()),
-        labels=", their labels and replies" if has_replies else " and their labels",
-    )
+    count = sum(bool(number.read) for number in verification.numbers.values())
+    return SUMMARIES[verification.verdict].format(count=count)
 
 
 def _findings(verification: Verification) -> Iterator[str]:
