@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
 
 from .costs import ALIKE, SLIGHT, WRONG
-from .glyphs import WIDE_GAP, Glyph, chars_of
+from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of
 from .page import CELLS, ROWS
 
 
@@ -75,6 +76,8 @@ def _cost(label: Label, read: str) -> float:
 
 LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
 """The labels of each row."""
+ROW_SIZES = {label.text: len([*_labels_of(label.row)]) for label in LABELS}
+"""Number of labels in the last row of each."""
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
 _COSTS = {text: np.array([np.inf, *(_cost(label, text) for label in LABELS)]) for text in _TEXTS}
 """Cost of each text in each label's place."""
@@ -117,16 +120,17 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
 
     The cheapest way to place labels on the page (Viterbi, 1967). A label that two rows have is that
     of the row in order; one in another's place is that one. A label is a note's where leaving it
-    out costs less: as much as one out of order. Of equal ways that which leaves out the last. One
-    beside such a note with the same label is not read exactly: either may be the note.
+    out costs less: as much as one out of order, or half of that for all of a line that lacks some
+    of its row. Of equal ways that which leaves out the last. One beside such a note with the same
+    label is not read exactly: either may be the note.
     """
     labels = find_labels(glyphs)
     sums = np.append(0.0, np.full(len(LABELS), np.inf))
     ways: list[list[int]] = [[]] * len(sums)  # the place of each label up to one, 0 for a note's
-    for text, *_ in labels:
+    for (text, *_), note_cost in zip(labels, _note_costs(labels, glyphs), strict=True):
         steps = sums[:, None] + _STEPS
         placed = steps.min(axis=0) + _COSTS[text]
-        noted = sums + (WRONG if text.endswith("=") else np.inf)
+        noted = sums + note_cost
         ways = [
             [*ways[at], 0] if is_note else [*ways[before], at]
             for at, (is_note, before) in enumerate(
@@ -141,3 +145,12 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
         for k, (at, (text, start, stop)) in enumerate(zip(places, labels, strict=True))
         if at
     ]
+
+
+def _note_costs(labels: Sequence[tuple[str, int, int]], glyphs: Sequence[Glyph]) -> Iterator[float]:
+    """Yield the cost that each label is a note's: less where its line lacks some of a row."""
+    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs]).tolist()
+    for _, line in groupby(labels, lambda label: lines[label[1]]):
+        texts = [text for text, *_ in line]
+        is_part = len(texts) < min(ROW_SIZES[text] for text in texts)
+        yield from [WRONG / (2 * len(texts)) if is_part else WRONG] * len(texts)
