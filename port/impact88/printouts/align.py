@@ -19,10 +19,8 @@ from numpy.typing import NDArray
 from .costs import ALIKE, UNPAIRED, WRONG
 from .glyphs import LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
-from .page import MANY, Cell
+from .page import CELLS, MANY, Cell
 
-Place = tuple[int, bool]
-"""Number of cells up to a glyph, and whether it is in the last of them or added after it."""
 Costs = NDArray[np.float64]
 PLACES = 6
 """Decimal places to which costs are compared."""
@@ -86,18 +84,10 @@ class Aligner:
             self._costs[char] = np.array(costs), np.array([UNPAIRED, *extra])
         return self._costs[char]
 
-    def align(self, glyphs: Sequence[Glyph]) -> list[Place]:
-        """Return the cheapest alignment.
+    def align(self, glyphs: Sequence[Glyph]) -> list[tuple[int, bool]]:
+        """Return for each glyph how many cells precede its end, and if it has the last of them.
 
-        Parameters
-        ----------
-        glyphs : sequence of Glyph
-            What is in the text.
-
-        Returns
-        -------
-        list of Place
-            The place of each glyph.
+        The cheapest alignment.
         """
         row = self.lost_sums
         steps = []  # for each number of cells passed: that at the glyph, and whether it has a cell
@@ -112,7 +102,7 @@ class Aligner:
             at = np.maximum.accumulate(np.where(is_less, np.arange(len(costs)), 0))
             steps.append((at.tolist(), is_own.tolist()))
             row = least + self.lost_sums
-        places: list[Place] = []
+        places = []
         j = len(self.cells)
         for at, is_own in reversed(steps):
             j = at[j]
@@ -135,3 +125,27 @@ def _added_gaps(cell: Cell) -> list[float]:
     if cell.name in MANY:
         return [0.0, 0.0, 0.0, UNPAIRED]
     return [0.0, UNPAIRED, UNPAIRED, WRONG]
+
+
+def align(cells: Sequence[int], glyphs: Sequence[Glyph]) -> list[int]:
+    """Return the cell of each glyph in the cheapest alignment.
+
+    Parameters
+    ----------
+    cells : sequence of int
+        Cells of the page, in its order.
+    glyphs : sequence of Glyph
+        What is in the text.
+
+    Returns
+    -------
+    list of int
+        The cell of each glyph, that of a slot also for those after its first; 0 for none.
+    """
+    if not cells:
+        return [0] * len(glyphs)
+    places = Aligner(tuple(CELLS[j] for j in cells)).align(glyphs)
+    return [
+        cells[k - 1] if k and (is_own or CELLS[cells[k - 1]].kind == "slot") else 0
+        for k, is_own in places
+    ]

@@ -22,7 +22,7 @@ class Label(NamedTuple):
     text : str
         Its characters, up to the equals sign.
     name : str
-        The number after it, "" for asterisks.
+        The number, or numbers, after it, "" for asterisks.
     row : int
         Its row.
     start, stop : int
@@ -62,7 +62,8 @@ def _labels_of(row: int) -> Iterator[Label]:
     for end in ends or cells[-1:]:
         start = max(j for j in cells if j < end and CELLS[j].first) if ends else cells[0]
         text = "".join(cell.char for cell in CELLS[start : end + 1])
-        yield Label(text, CELLS[end].name, row, start, end + 1)
+        owned = [cell.name for cell in CELLS[end + 1 : end + 2] if cell.kind == "slot"]
+        yield Label(text, "".join(owned), row, start, end + 1)
 
 
 def _cost(label: Label, read: str) -> float:
@@ -130,7 +131,7 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     for (text, *_), note_cost in zip(labels, _note_costs(labels, glyphs), strict=True):
         steps = sums[:, None] + _STEPS
         placed = steps.min(axis=0) + _COSTS[text]
-        noted = sums + note_cost
+        noted = sums + (note_cost if text.endswith("=") else np.inf)
         ways = [
             [*ways[at], 0] if is_note else [*ways[before], at]
             for at, (is_note, before) in enumerate(

@@ -84,7 +84,7 @@ class Cell(NamedTuple):
 
 
 def _cells_of(row: int, text: str) -> list[Cell]:
-    cells = [Cell("", "between", "", row)]
+    cells = [Cell("", "between", "", row)] if row != ANGLE_ROW else []
     parts = re.findall(r"{\w+}|[A-Z]+|[^\sA-Z]", text)
     for at, part in enumerate(parts):
         is_behind = part in (")", "%")
