@@ -53,7 +53,7 @@ _NO_NUMBER = re.compile("[^-0-9.E,+]")
 MACHINE_READ = 3
 """Misread characters of labels and damaged numbers from which a machine read the page."""
 MIN_NUMBERS = 3
-"""Numbers that make a text with labels a printout."""
+"""Numbers after exact labels that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
 FIRST = Label("", "", -1, -1, 0)
@@ -73,7 +73,8 @@ class Slot:
     is_torn : bool
         True if a blank, or a character of something else, is in it.
     is_bounded : bool
-        True if it ends where the program ends a number: at a blank or the mark printed after it.
+        True if it ends where the program ends a number: at a blank or the mark printed after it,
+        before the next label of its row.
     """
 
     glyphs: list[Glyph]
@@ -128,11 +129,12 @@ class Reading:
 
     @property
     def is_printout(self) -> bool:
-        """True if most texts in the places of numbers are numbers."""
+        """True if most texts in the places of numbers are numbers, some after exact labels."""
         if self.ending and "REPLY_A" in self.slots:
             return True
-        numbers = sum(bool(NUMERAL.fullmatch(slot.text)) for slot in self.slots.values())
-        return numbers >= max(MIN_NUMBERS, len(self.slots) / 2)
+        numbers = [slot for slot in self.slots.values() if NUMERAL.fullmatch(slot.text)]
+        exact = sum(slot.label == "exact" for slot in numbers)
+        return exact >= MIN_NUMBERS and 2 * len(numbers) >= len(self.slots)
 
     @cached_property
     def is_machine_read(self) -> bool:
@@ -338,7 +340,10 @@ class _Reader:
             slot.is_torn |= chars_of(glyphs[:start]).endswith((".", "-"))
             if end == count:
                 slot.is_torn |= is_last and _is_further(glyphs[end:])
-                slot.is_bounded = self._is_end(before.stop + end, CELLS[j + 1].char)
+                is_before_label = is_last or chars_of(glyphs[end:])[:1].isalpha()
+                slot.is_bounded = is_before_label and self._is_end(
+                    before.stop + end, CELLS[j + 1].char
+                )
             self._add_slot(cell.name, slot)
 
     def _is_end(self, at: int, mark: str) -> bool:
