@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .costs import ALIKE, UNPAIRED, WRONG
-from .glyphs import LOOKALIKES, Glyph
+from .glyphs import LINE_GAP, LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
 from .page import CELLS, MANY, Cell
 
@@ -60,15 +60,16 @@ class Aligner:
 
     Parameters
     ----------
-    cells : sequence of Cell
-        The cells, in the page's order.
+    places : tuple of int
+        The cells (`CELLS`), in the page's order.
     """
 
-    def __init__(self, cells: Sequence[Cell]) -> None:
-        self.cells = cells
+    def __init__(self, places: tuple[int, ...]) -> None:
+        self.places = places
+        self.cells = cells = [CELLS[j] for j in places]
         lost = [0.0 if cell.kind == "between" else UNPAIRED for cell in cells]
         self.lost_sums = np.cumsum([0.0, *lost])
-        self.own_gaps = np.array([*map(_own_gaps, cells)])
+        self.own_gaps = np.array([*map(_own_gaps, cells)]).reshape(-1, LINE_GAP + 1)
         self.added_gaps = np.array([[0.0] * 4, *map(_added_gaps, cells)])
         self._costs: dict[str, tuple[Costs, Costs]] = {}
 
@@ -80,14 +81,23 @@ class Aligner:
                 WRONG if cell.kind == "word" else cost
                 for cell, cost in zip(self.cells, costs, strict=True)
             ]
+            extra = [UNPAIRED, *extra]
             extra[-1] = min(extra[-1], UNPAIRED)
-            self._costs[char] = np.array(costs), np.array([UNPAIRED, *extra])
+            self._costs[char] = np.array(costs), np.array(extra)
         return self._costs[char]
 
-    def align(self, glyphs: Sequence[Glyph]) -> list[tuple[int, bool]]:
-        """Return for each glyph how many cells precede its end, and if it has the last of them.
+    def align(self, glyphs: Sequence[Glyph]) -> list[int]:
+        """Return the cell of each glyph in the cheapest alignment.
 
-        The cheapest alignment.
+        Parameters
+        ----------
+        glyphs : sequence of Glyph
+            What is in the text.
+
+        Returns
+        -------
+        list of int
+            The cell of each glyph, also of those after the first of a slot; 0 for none.
         """
         row = self.lost_sums
         steps = []  # for each number of cells passed: that at the glyph, and whether it has a cell
@@ -106,7 +116,8 @@ class Aligner:
         j = len(self.cells)
         for at, is_own in reversed(steps):
             j = at[j]
-            places.append((j, is_own[j]))
+            is_placed = j and (is_own[j] or self.cells[j - 1].kind == "slot")
+            places.append(self.places[j - 1] if is_placed else 0)
             j -= is_own[j]
         return places[::-1]
 
@@ -125,27 +136,3 @@ def _added_gaps(cell: Cell) -> list[float]:
     if cell.name in MANY:
         return [0.0, 0.0, 0.0, UNPAIRED]
     return [0.0, UNPAIRED, UNPAIRED, WRONG]
-
-
-def align(cells: Sequence[int], glyphs: Sequence[Glyph]) -> list[int]:
-    """Return the cell of each glyph in the cheapest alignment.
-
-    Parameters
-    ----------
-    cells : sequence of int
-        Cells of the page, in its order.
-    glyphs : sequence of Glyph
-        What is in the text.
-
-    Returns
-    -------
-    list of int
-        The cell of each glyph, that of a slot also for those after its first; 0 for none.
-    """
-    if not cells:
-        return [0] * len(glyphs)
-    places = Aligner(tuple(CELLS[j] for j in cells)).align(glyphs)
-    return [
-        cells[k - 1] if k and (is_own or CELLS[cells[k - 1]].kind == "slot") else 0
-        for k, is_own in places
-    ]

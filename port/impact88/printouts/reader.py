@@ -16,7 +16,7 @@ from itertools import chain, groupby, pairwise
 
 import numpy as np
 
-from .align import align
+from .align import Aligner
 from .costs import ALIKE
 from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of, glyphs_of, split_at_gaps
 from .labels import LABELS, Anchor, Label, find_anchors, find_labels, is_note
@@ -314,7 +314,7 @@ class _Reader:
         is_last = label.row not in rows
         if count and is_last and label.name not in MANY:  # nothing else belongs there
             count += _count_torn(glyphs[count:])
-        places = owner * count + align(cells, glyphs[count:])
+        places = owner * count + Aligner((*cells,)).align(glyphs[count:])
         labels = {
             CELLS[j].name: "damaged"
             for j, glyph in zip(places, glyphs, strict=True)
