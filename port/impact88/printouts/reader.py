@@ -132,8 +132,8 @@ class Reading:
         """True if most texts in the places of numbers are numbers, some after exact labels."""
         if self.ending and "REPLY_A" in self.slots:
             return True
-        numbers = [slot for slot in self.slots.values() if NUMERAL.fullmatch(slot.text)]
-        exact = sum(slot.label == "exact" for slot in numbers)
+        numbers = [name for name, slot in self.slots.items() if NUMERAL.fullmatch(slot.text)]
+        exact = sum(name in NAMES and self.slots[name].label == "exact" for name in numbers)
         return exact >= MIN_NUMBERS and 2 * len(numbers) >= len(self.slots)
 
     @cached_property
