@@ -17,12 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .costs import ALIKE, UNPAIRED, WRONG
-from .glyphs import LOOKALIKES, Glyph
+from .glyphs import LINE_GAP, LOOKALIKES, Glyph
 from .numerals import NUMBER_CHARS
-from .page import MANY, Cell
+from .page import CELLS, MANY, Cell
 
-Place = tuple[int, bool]
-"""Number of cells up to a glyph, and whether it is in the last of them or added after it."""
 Costs = NDArray[np.float64]
 PLACES = 6
 """Decimal places to which costs are compared."""
@@ -62,15 +60,16 @@ class Aligner:
 
     Parameters
     ----------
-    cells : sequence of Cell
-        The cells, in the page's order.
+    places : tuple of int
+        The cells (`CELLS`), in the page's order.
     """
 
-    def __init__(self, cells: Sequence[Cell]) -> None:
-        self.cells = cells
+    def __init__(self, places: tuple[int, ...]) -> None:
+        self.places = places
+        self.cells = cells = [CELLS[j] for j in places]
         lost = [0.0 if cell.kind == "between" else UNPAIRED for cell in cells]
         self.lost_sums = np.cumsum([0.0, *lost])
-        self.own_gaps = np.array([*map(_own_gaps, cells)])
+        self.own_gaps = np.array([*map(_own_gaps, cells)]).reshape(-1, LINE_GAP + 1)
         self.added_gaps = np.array([[0.0] * 4, *map(_added_gaps, cells)])
         self._costs: dict[str, tuple[Costs, Costs]] = {}
 
@@ -82,12 +81,13 @@ class Aligner:
                 WRONG if cell.kind == "word" else cost
                 for cell, cost in zip(self.cells, costs, strict=True)
             ]
+            extra = [UNPAIRED, *extra]
             extra[-1] = min(extra[-1], UNPAIRED)
-            self._costs[char] = np.array(costs), np.array([UNPAIRED, *extra])
+            self._costs[char] = np.array(costs), np.array(extra)
         return self._costs[char]
 
-    def align(self, glyphs: Sequence[Glyph]) -> list[Place]:
-        """Return the cheapest alignment.
+    def align(self, glyphs: Sequence[Glyph]) -> list[int]:
+        """Return the cell of each glyph in the cheapest alignment.
 
         Parameters
         ----------
@@ -96,8 +96,8 @@ class Aligner:
 
         Returns
         -------
-        list of Place
-            The place of each glyph.
+        list of int
+            The cell of each glyph, also of those after the first of a slot; 0 for none.
         """
         row = self.lost_sums
         steps = []  # for each number of cells passed: that at the glyph, and whether it has a cell
@@ -112,11 +112,12 @@ class Aligner:
             at = np.maximum.accumulate(np.where(is_less, np.arange(len(costs)), 0))
             steps.append((at.tolist(), is_own.tolist()))
             row = least + self.lost_sums
-        places: list[Place] = []
+        places = []
         j = len(self.cells)
         for at, is_own in reversed(steps):
             j = at[j]
-            places.append((j, is_own[j]))
+            is_placed = j and (is_own[j] or self.cells[j - 1].kind == "slot")
+            places.append(self.places[j - 1] if is_placed else 0)
             j -= is_own[j]
         return places[::-1]
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
-from itertools import pairwise
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .costs import ALIKE, SLIGHT, WRONG
-from .glyphs import LINE_GAP, LOOKALIKES, WIDE_GAP, Glyph, chars_of, split_at_gaps
+from .glyphs import LINE_GAP, WIDE_GAP, Glyph, chars_of
 from .page import CELLS, ROWS
 
 
@@ -25,7 +22,7 @@ class Label(NamedTuple):
     text : str
         Its characters, up to the equals sign.
     name : str
-        The number after it, "" for asterisks.
+        The number, or numbers, after it, "" for asterisks.
     row : int
         Its row.
     start, stop : int
@@ -65,13 +62,26 @@ def _labels_of(row: int) -> Iterator[Label]:
     for end in ends or cells[-1:]:
         start = max(j for j in cells if j < end and CELLS[j].first) if ends else cells[0]
         text = "".join(cell.char for cell in CELLS[start : end + 1])
-        yield Label(text, CELLS[end].name, row, start, end + 1)
+        owned = [cell.name for cell in CELLS[end + 1 : end + 2] if cell.kind == "slot"]
+        yield Label(text, "".join(owned), row, start, end + 1)
+
+
+def _cost(label: Label, read: str) -> float:
+    """Return the cost of a text in a label's place: less for one of the same row, as exchanged."""
+    if label.text == read:
+        return 0.0
+    if label.text[-1] != read[-1]:
+        return np.inf
+    return WRONG / 2 if any(other.text == read for other in _labels_of(label.row)) else WRONG
 
 
 LABELS = tuple(label for row in range(len(ROWS)) for label in _labels_of(row))
 """The labels of each row."""
-ROW_SIZES = Counter(label.row for label in LABELS)
+ROW_SIZES = {label.text: len([*_labels_of(label.row)]) for label in LABELS}
+"""Number of labels in the last row of each."""
 _TEXTS = sorted({label.text for label in LABELS}, key=len, reverse=True)
+_COSTS = {text: np.array([np.inf, *(_cost(label, text) for label in LABELS)]) for text in _TEXTS}
+"""Cost of each text in each label's place."""
 LABEL = re.compile("|".join(map(re.escape, _TEXTS)))
 WORDS = re.compile("[A-Z]{3}")
 _AHEAD = np.subtract.outer(np.arange(len(LABELS) + 1), np.arange(len(LABELS) + 1)).T
@@ -111,29 +121,25 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
 
     The cheapest way to place labels on the page (Viterbi, 1967). A label that two rows have is that
     of the row in order; one in another's place is that one. A label is a note's where leaving it
-    out costs less: as much as one out of order, or half of that for the single one of a line. Of
-    equal ways that which leaves out the last. One beside such a note with the same label is not
-    read exactly: either may be the note.
+    out costs less: as much as one out of order, or half of that for all of a line that lacks some
+    of its row. Of equal ways that which leaves out the last. One beside such a note with the same
+    label is not read exactly: either may be the note.
     """
     labels = find_labels(glyphs)
-    limits: list[float] = []
-    for line in split_at_gaps(glyphs, LINE_GAP):
-        limits += [_note_cost(line)] * len(line)
     sums = np.append(0.0, np.full(len(LABELS), np.inf))
-    ways = []
-    for (text, start, _), costs in zip(labels, _costs_of(labels), strict=True):
+    ways: list[list[int]] = [[]] * len(sums)  # the place of each label up to one, 0 for a note's
+    for (text, *_), note_cost in zip(labels, _note_costs(labels, glyphs), strict=True):
         steps = sums[:, None] + _STEPS
-        placed = steps.min(axis=0) + costs
-        noted = sums + (limits[start] if text.endswith("=") else np.inf)
-        ways.append(np.where(noted <= placed, -1, steps.argmin(axis=0)).tolist())
+        placed = steps.min(axis=0) + _COSTS[text]
+        noted = sums + (note_cost if text.endswith("=") else np.inf)
+        ways = [
+            [*ways[at], 0] if is_note else [*ways[before], at]
+            for at, (is_note, before) in enumerate(
+                zip((noted <= placed).tolist(), steps.argmin(axis=0).tolist(), strict=True)
+            )
+        ]
         sums = np.minimum(noted, placed)
-    places = []
-    at = int((sums - SLIGHT * np.arange(len(sums))).argmin())  # passing over those after it
-    for way in reversed(ways):
-        is_placed = way[at] >= 0
-        places.append(at * is_placed)
-        at = way[at] if is_placed else at
-    places.reverse()
+    places = ways[int((sums - SLIGHT * np.arange(len(sums))).argmin())]  # passing over the rest
     notes = ["", *("" if at else text for at, (text, *_) in zip(places, labels, strict=True)), ""]
     return [
         Anchor(LABELS[at - 1], "" if text in (notes[k], notes[k + 2]) else text, start, stop)
@@ -142,38 +148,10 @@ def find_anchors(glyphs: Sequence[Glyph]) -> list[Anchor]:
     ]
 
 
-def _note_cost(line: Sequence[Glyph]) -> float:
-    """Return the cost that a label of a line is a note's: less where the line lacks labels."""
-    texts = [label[0] for label in find_labels(line)]
-    rows = Counter(label.row for label in LABELS if label.text in texts)
-    best = [row for row, count in rows.items() if count == max(rows.values())]
-    size = min((ROW_SIZES[row] for row in best), default=0)
-    return WRONG / (2 * len(texts)) if len(texts) < size else WRONG
-
-
-def _costs_of(labels: Sequence[tuple[str, int, int]]) -> NDArray[np.float64]:
-    """Return the cost of each label that was read in each label's place, after that of none.
-
-    Two of a row that were exchanged cost as much as one.
-    """
-    texts = [label[0] for label in labels]
-    costs = np.array(
-        [[np.inf, *(_label_cost(label.text, text) for label in LABELS)] for text in texts]
-    )
-    for k, pair in enumerate(pairwise(texts)):
-        for j, (first, second) in enumerate(pairwise(LABELS), 1):
-            if first.row == second.row and (second.text, first.text) == pair:
-                costs[k, j] = costs[k + 1, j + 1] = WRONG / 2
-    return costs
-
-
-@lru_cache(maxsize=10_000)
-def _label_cost(label: str, read: str) -> float:
-    """Return the cost that a label was read as another."""
-    if label == read:
-        return 0.0
-    if not (label[-1] == read[-1] == "="):
-        return 99.0
-    changes = [(a, b) for a, b in zip(label, read, strict=False) if a != b]
-    is_alike = len(label) == len(read) and all(b in LOOKALIKES.get(a, "") for a, b in changes)
-    return ALIKE if is_alike and len(changes) == 1 else WRONG
+def _note_costs(labels: Sequence[tuple[str, int, int]], glyphs: Sequence[Glyph]) -> Iterator[float]:
+    """Yield the cost that each label is a note's: less where its line lacks some of a row."""
+    lines = np.cumsum([glyph.gap == LINE_GAP for glyph in glyphs]).tolist()
+    for _, line in groupby(labels, lambda label: lines[label[1]]):
+        texts = [text for text, *_ in line]
+        is_part = len(texts) < min(ROW_SIZES[text] for text in texts)
+        yield from [WRONG / (2 * len(texts)) if is_part else WRONG] * len(texts)

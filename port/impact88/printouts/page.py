@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 ROWS = (
@@ -83,24 +83,23 @@ class Cell(NamedTuple):
     first: bool = False
 
 
-def _cells_of(row: int, text: str) -> list[Cell]:
-    cells = [Cell("", "between", "", row)]
-    parts = re.findall(r"{\w+}|[A-Z]+|[^\sA-Z]", text)
-    for at, part in enumerate(parts):
-        is_behind = part in (")", "%")
-        neighbours = parts[at::-1] if is_behind else parts[at:]
-        name = next((text[1:-1] for text in neighbours if text.startswith("{")), "")
-        if part.startswith("{"):
-            cells.append(Cell("", "slot", name, row, True))
-        else:
-            cells += [Cell(char, "word", name, row, not k) for k, char in enumerate(part)]
-    return cells
+def _cells_of(row: int, text: str) -> Iterator[Cell]:
+    """Yield the cells of a row: words, the number after them, and the mark after it."""
+    if row != ANGLE_ROW:
+        yield Cell("", "between", "", row)
+    for words, name, mark in re.findall(r"([^{]+)(?:{(\w+)} ?([)%]?))?", text):
+        for word in re.findall("[A-Z]+|[^A-Z ]", words):
+            yield from (Cell(char, "word", name, row, not k) for k, char in enumerate(word))
+        if name:
+            yield Cell("", "slot", name, row, True)
+        if mark:
+            yield Cell(mark, "word", name, row, True)
 
 
 CELLS = tuple(
     cell
     for row, text in enumerate(ROWS)
-    for cell in _cells_of(row, "{ANGLES}" if row == ANGLE_ROW else text.upper())
+    for cell in _cells_of(row, re.sub("{PA}.*", "{ANGLES}", text.upper()))
 )
 """The page with each number as one slot; the five angles share one."""
 SLOT_CELLS = {cell.name: j for j, cell in enumerate(CELLS) if cell.kind == "slot"}

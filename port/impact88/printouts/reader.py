@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import groupby, pairwise
+from itertools import chain, groupby, pairwise
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from .page import (
     NAMES,
     PROMPTS,
     REPLIES,
-    ROW_OF,
     ROWS,
     SLOT_CELLS,
 )
@@ -54,7 +53,7 @@ _NO_NUMBER = re.compile("[^-0-9.E,+]")
 MACHINE_READ = 3
 """Misread characters of labels and damaged numbers from which a machine read the page."""
 MIN_NUMBERS = 3
-"""Numbers, after two letters of labels each, that make a text a printout."""
+"""Numbers after exact labels that make a text a printout."""
 PAGE_STEP = 5
 """Rows up the page from which a line begins another printout."""
 FIRST = Label("", "", -1, -1, 0)
@@ -130,16 +129,12 @@ class Reading:
 
     @property
     def is_printout(self) -> bool:
-        """True if most texts in the places of numbers are numbers, after labels."""
+        """True if most texts in the places of numbers are numbers, some after exact labels."""
         if self.ending and "REPLY_A" in self.slots:
             return True
-        letters = sum(
-            CELLS[j].row not in PROMPTS and CELLS[j].char == glyph.char and glyph.char.isalpha()
-            for j, glyph in self.chars.items()
-        )
-        numbers = sum(bool(NUMERAL.fullmatch(slot.text)) for slot in self.slots.values())
-        least = max(MIN_NUMBERS, len(self.slots) / 2)
-        return numbers >= least and letters >= 2 * MIN_NUMBERS
+        numbers = [name for name, slot in self.slots.items() if NUMERAL.fullmatch(slot.text)]
+        exact = sum(name in NAMES and self.slots[name].label == "exact" for name in numbers)
+        return exact >= MIN_NUMBERS and 2 * len(numbers) >= len(self.slots)
 
     @cached_property
     def is_machine_read(self) -> bool:
@@ -264,160 +259,119 @@ class _Reader:
     def __init__(self, text: str, glyphs: Sequence[Glyph]) -> None:
         self.reading = Reading(text)
         self.glyphs = glyphs
+        self.own: set[Glyph] = set()
 
     def read(self) -> Reading:
         """Return what was read."""
-        reading, glyphs = self.reading, self.glyphs
-        anchors = find_anchors(glyphs)
-        start = anchors[-1].stop if anchors else 0
-        if ending := ENDING.search(chars_of(glyphs), start):
+        reading = self.reading
+        anchors = find_anchors(self.glyphs)
+        if ending := ENDING.search(chars_of(self.glyphs)):
             reading.ending = ending[0]
-            glyphs = glyphs[: ending.start()]
-        cells_read = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
-        owners = {_owner(anchor.label) for anchor in anchors}
-        cells_read |= {SLOT_CELLS[owner] for owner in owners if owner}
-        if not PROMPT.search(chars_of(glyphs)):
-            cells_read |= {j for j, cell in enumerate(CELLS) if cell.row in PROMPTS}
+            self.glyphs = self.glyphs[: ending.start()]
+        absent = () if PROMPT.search(chars_of(self.glyphs)) else PROMPTS
+        read = {j for anchor in anchors for j in range(anchor.label.start, anchor.label.stop)}
+        read |= {SLOT_CELLS[anchor.label.name] for anchor in anchors if anchor.label.name}
+        free = [j for j, cell in enumerate(CELLS) if j not in read and cell.row not in absent]
         before = Anchor(FIRST, "", 0, 0)
-        for anchor in [*anchors, Anchor(LAST, "", len(glyphs), len(glyphs))]:
-            between = range(before.label.stop, anchor.label.start) or _rest_of_row(before.label)
-            cells = [j for j in between if j not in cells_read]
-            self._read_between(glyphs[before.stop : anchor.start], before, cells)
-            self._read_label(anchor)
+        for anchor in [*anchors, Anchor(LAST, "", len(self.glyphs), len(self.glyphs))]:
+            cells = [j for j in free if before.label.stop <= j < anchor.label.start]
             if anchor.label.start <= before.label.start:
+                row = before.label.row
+                cells = [j for j in free if j >= before.label.stop and CELLS[j].row == row]
                 reading.disorder.append((anchor.label.row, self.glyphs[anchor.start]))
+            self._read_between(before, anchor.start, cells)
+            places = range(anchor.label.start, anchor.label.stop)
+            self._add_chars(places[::-1], self.glyphs[anchor.start : anchor.stop][::-1])
             before = anchor
         self._split_replies()
-        self._drop_text_outside()
+        reading.foreign = [*self._foreign()]
         return reading
 
-    def _drop_text_outside(self) -> None:
-        """Drop the foreign text above the page's first line and below its last."""
-        reading = self.reading
-        if reading.places():
-            start, stop = reading.span()
-            lines = split_at_gaps(self.glyphs, LINE_GAP)
-            own = [line for line in lines if line[-1].offset >= start and line[0].offset < stop]
-            first, last = own[0][0].offset, own[-1][-1].offset
-            reading.foreign = [run for run in reading.foreign if first <= run[0].offset <= last]
+    def _foreign(self) -> Iterator[list[Glyph]]:
+        """Yield what belongs to no cell, from the page's first line to its last."""
+        lines = [*split_at_gaps(self.glyphs, LINE_GAP)]
+        own = [k for k, line in enumerate(lines) if not self.own.isdisjoint(line)]
+        page = chain.from_iterable(lines[min(own, default=0) : max(own, default=-1) + 1])
+        for is_own, run in groupby(page, self.own.__contains__):
+            if not is_own:
+                yield [*run]
 
-    def _read_label(self, anchor: Anchor) -> None:
-        """Give the glyphs of an anchor to the cells of its label."""
-        glyphs = self.glyphs[anchor.start : anchor.stop]
-        if glyphs:
-            *cells, last = range(anchor.label.start, anchor.label.stop)
-            self.reading.chars |= dict(zip(cells, glyphs[:-1], strict=False))
-            self.reading.chars[last] = glyphs[-1]
-            if further := glyphs[len(cells) : -1]:  # of a longer label in its place
-                self.reading.foreign.append([*further])
+    def _add_chars(self, cells: Sequence[int], glyphs: Sequence[Glyph]) -> None:
+        """Add the characters of words."""
+        self.reading.chars |= dict(zip(cells, glyphs, strict=False))
+        self.own.update(glyphs[: len(cells)])
 
-    def _read_between(self, glyphs: Sequence[Glyph], before: Anchor, cells: list[int]) -> None:
-        """Read the text between two anchors: the number that the first owns, and the rest."""
-        owner, row = _owner(before.label), before.label.row
-        is_exact = before.read == before.label.text
-        count = _count_owned(glyphs, before.label)
-        slots: dict[str, Slot] = {}
-        if count:
-            slot = Slot([*glyphs[:count]], "exact" if is_exact else "damaged")
-            end = before.stop + count
-            mark = CELLS[SLOT_CELLS[owner] + 1].char
-            ends = [
-                glyph.gap > 0 or glyph.char == mark != "(" for glyph in self.glyphs[end : end + 1]
-            ]
-            is_label = any(glyph.char.isalpha() for glyph in glyphs[count : count + 1])
-            is_last = not any(CELLS[j].kind == "slot" for j in cells if CELLS[j].row == row)
-            slot.is_bounded = all(ends) and (is_last or is_label)
-            slots[owner] = slot
-            slot.is_torn = any(b.gap > 0 and a.char not in ",;" for a, b in pairwise(slot.glyphs))
-            if owner not in MANY and is_last:  # nothing else belongs there
-                rest = glyphs[count:]
-                torn = _count_torn(rest)
-                is_further = NUMERAL.match(chars_of(rest)) and rest[0].gap < LINE_GAP
-                slot.is_torn = bool(torn or is_further)
-                slot.glyphs += rest[:torn]
-                count += torn
-            tail = glyphs[count:]
-        else:
-            tail = glyphs
-            if owner:
-                cells = [SLOT_CELLS[owner], *cells]
-        if tail:
-            slots = self._align(tail, cells, before.label, is_exact and not count) | slots
-        for name, slot in slots.items():
-            if name == "ANGLES":
-                self._add_angles(slot)
-            else:
-                self._add_slot(name, slot)
-
-    def _add_angles(self, row: Slot) -> None:
-        """Add the angles of a row, which are read only if there are five."""
-        words = [*_angle_words(row.glyphs)]
-        with_digits = [word for word in words if re.search("[0-9]", chars_of(word))]
-        numbers = [word for word in words if readings(chars_of(word))]
-        five = with_digits if len(with_digits) == len(ANGLES) else numbers
-        if len(five) == len(ANGLES):
-            for name, word in zip(ANGLES, five, strict=True):
-                self._add_slot(name, Slot(word, row.label, any(glyph.gap for glyph in word[1:])))
-            self.reading.foreign += [word for word in words if word not in five]
-
-    def _add_slot(self, name: str, slot: Slot) -> None:
-        """Add the text in the place of a number, or a second one."""
-        slots = self.reading.slots
-        if name in slots:
-            self.reading.repeated.append((name, slot))
-        else:
-            slots[name] = slot
-
-    def _align(
-        self,
-        glyphs: Sequence[Glyph],
-        cells: Sequence[int],
-        before: Label,
-        is_owned: bool,
-    ) -> dict[str, Slot]:
-        """Align glyphs with cells; return the slots, and list what belongs to none.
+    def _read_between(self, before: Anchor, stop: int, cells: list[int]) -> None:
+        """Read the text between two anchors: the number that the first owns, and the rest.
 
         A number without a label counts only if its line has as many numbers as places.
         """
-        aligner = Aligner(tuple(CELLS[j] for j in cells))
-        members_of: dict[str, list[int]] = {}
-        owners: set[str] = {*MANY}
-        foreign: set[int] = set()
-        for i, (k, is_own) in enumerate(aligner.align(glyphs) if cells else ()):
-            j = cells[k - 1]
-            name, kind = CELLS[j].name, CELLS[j].kind if k else ""
-            if is_own and kind == "slot":
-                members_of[name] = [i]
-            elif is_own and kind == "word":
-                self.reading.chars[j] = glyphs[i]
-                if CELLS[j].char == glyphs[i].char != "=":
-                    owners.add(name)
-            elif (
-                kind == "slot"
-                and members_of.get(name, [])[-1:] == [i - 1]
-                and (glyphs[i].gap < LINE_GAP or name in MANY)
-            ):
-                members_of[name].append(i)
-            else:
-                foreign.add(i)
-        if not cells:
-            foreign = {*range(len(glyphs))}
-        slots: dict[str, Slot] = {}
-        for name, members in members_of.items():
-            places = sum(CELLS[j].kind == "slot" and CELLS[j].row == ROW_OF[name] for j in cells)
-            is_whole = _is_whole(glyphs, members)
-            is_single = is_whole and places == _count_numbers(glyphs, glyphs[members[0]])
-            label = "exact" if is_owned and name == _owner(before) else "damaged" * (name in owners)
-            if not label and not is_single:
-                foreign.update(members)
+        label, glyphs = before.label, [*self.glyphs[before.stop : stop]]
+        owner = [SLOT_CELLS[label.name]] if label.name else []
+        count = _count_owned(glyphs, label)
+        cells = cells if count else owner + cells
+        rows = [CELLS[j].row for j in cells if CELLS[j].kind == "slot"]
+        is_last = label.row not in rows
+        if count and is_last and label.name not in MANY:  # nothing else belongs there
+            count += _count_torn(glyphs[count:])
+        places = owner * count + Aligner((*cells,)).align(glyphs[count:])
+        labels = {
+            CELLS[j].name: "damaged"
+            for j, glyph in zip(places, glyphs, strict=True)
+            if CELLS[j].name in MANY or CELLS[j].char == glyph.char != "="
+        }
+        labels[label.name] = "exact" if before.read == label.text else "damaged"
+        end = 0
+        for j, group in groupby(places):
+            start, end = end, end + len([*group])
+            run, cell = glyphs[start:end], CELLS[j]
+            if cell.kind == "word":
+                self._add_chars([j], run)
+            if cell.kind != "slot":
                 continue
-            slot = Slot([glyphs[i] for i in members], label, not is_whole)
-            slot.is_torn |= name not in MANY and any(glyph.gap for glyph in slot.glyphs[1:])
-            slot.is_torn |= chars_of(glyphs[: members[0]]).endswith((".", "-"))
-            slots[name] = slot
-        for _, run in groupby(enumerate(sorted(foreign)), lambda pair: pair[1] - pair[0]):
-            self.reading.foreign.append([glyphs[i] for _, i in run])
-        return slots
+            is_whole = _is_whole(glyphs, start, start + len(run))
+            places_left = rows.count(cell.row)
+            if cell.name not in labels and (
+                not is_whole or places_left != _count_numbers(glyphs[count:], run[0])
+            ):
+                continue
+            slot = Slot(run, labels.get(cell.name, ""), not is_whole)
+            slot.is_torn |= any(b.gap > 0 and a.char not in ",;" for a, b in pairwise(run))
+            slot.is_torn |= chars_of(glyphs[:start]).endswith((".", "-"))
+            if end == count:
+                slot.is_torn |= is_last and _is_further(glyphs[end:])
+                is_before_label = is_last or chars_of(glyphs[end:])[:1].isalpha()
+                slot.is_bounded = is_before_label and self._is_end(
+                    before.stop + end, CELLS[j + 1].char
+                )
+            self._add_slot(cell.name, slot)
+
+    def _is_end(self, at: int, mark: str) -> bool:
+        """Return True where a blank, or the mark printed there, follows a number."""
+        return all(glyph.gap or glyph.char == mark != "(" for glyph in self.glyphs[at : at + 1])
+
+    def _add_slot(self, name: str, slot: Slot) -> None:
+        """Add the text in the place of a number, or a second one.
+
+        The five angles are read only if there are five.
+        """
+        if name == "ANGLES":
+            words = _angle_words(slot.glyphs)
+            with_digits = [word for word in words if re.search("[0-9]", chars_of(word))]
+            numbers = [word for word in words if readings(chars_of(word))]
+            five = with_digits if len(with_digits) == len(ANGLES) else numbers
+            if len(five) != len(ANGLES):
+                self.own.update(slot.glyphs)
+            else:
+                for angle, word in zip(ANGLES, five, strict=True):
+                    is_torn = any(glyph.gap for glyph in word[1:])
+                    self._add_slot(angle, Slot(word, slot.label, is_torn))
+            return
+        self.own.update(slot.glyphs)
+        if name in self.reading.slots:
+            self.reading.repeated.append((name, slot))
+        else:
+            self.reading.slots[name] = slot
 
     def _split_replies(self) -> None:
         """Split the replies into their numbers."""
@@ -428,16 +382,14 @@ class _Reader:
                     self.reading.replies |= dict(zip(names, texts, strict=True))
 
 
-def _angle_words(row: Sequence[Glyph]) -> Iterator[list[Glyph]]:
-    """Yield the words of the row of angles: a sign before a blank is the next word's."""
-    sign: list[Glyph] = []
-    for word in split_at_gaps(row):
-        sign += word
-        if chars_of(word) not in "-~":
-            yield sign
-            sign = []
-    if sign:
-        yield sign
+def _angle_words(row: list[Glyph]) -> list[list[Glyph]]:
+    """Return the words of the row of angles: a sign before a blank is the next word's."""
+    cuts = [
+        k
+        for k, glyph in enumerate(row)
+        if glyph.gap == LINE_GAP or not k or (glyph.gap and row[k - 1].char not in "-~")
+    ]
+    return [row[a:b] for a, b in pairwise([*cuts, len(row)])]
 
 
 def _count_owned(glyphs: Sequence[Glyph], label: Label) -> int:
@@ -447,18 +399,6 @@ def _count_owned(glyphs: Sequence[Glyph], label: Label) -> int:
     if label.row in PROMPTS:
         return _end_of_line(glyphs, 1)
     return _count_number(glyphs) if label.text.endswith("=") else 0
-
-
-def _owner(label: Label) -> str:
-    """Return the number, or numbers, that follow a label."""
-    if label.row == HEADING:
-        return "ANGLES"
-    return label.name if label.text[-1:] in ("=", "?") else ""
-
-
-def _rest_of_row(label: Label) -> list[int]:
-    """Return the cells after a label in its row."""
-    return [j for j, cell in enumerate(CELLS) if cell.row == label.row and j >= label.stop]
 
 
 def _end_of_line(glyphs: Sequence[Glyph], words: int) -> int:
@@ -496,14 +436,19 @@ def _count_torn(rest: Sequence[Glyph]) -> int:
     return count
 
 
+def _is_further(rest: Sequence[Glyph]) -> bool:
+    """Return True if another number follows on the line."""
+    return bool(NUMERAL.match(chars_of(rest))) and rest[0].gap < LINE_GAP
+
+
 def _count_numbers(glyphs: Sequence[Glyph], glyph: Glyph) -> int:
     """Return how many words with digits are on the line of a glyph."""
     line = next(line for line in split_at_gaps(glyphs, LINE_GAP) if glyph in line)
     return sum(bool(re.search("[0-9]", chars_of(word))) for word in split_at_gaps(line))
 
 
-def _is_whole(glyphs: Sequence[Glyph], members: Sequence[int]) -> bool:
+def _is_whole(glyphs: Sequence[Glyph], start: int, stop: int) -> bool:
     """Return True for glyphs that no other digit or point touches."""
-    a, b = members[0], members[-1] + 1
-    is_start = not a or glyphs[a].gap > 0 or glyphs[a - 1].char not in "0123456789."
-    return is_start and (b == len(glyphs) or glyphs[b].gap > 0 or not glyphs[b].char.isdigit())
+    before, after = chars_of(glyphs[:start])[-1:], chars_of(glyphs[stop : stop + 1])
+    is_start = not before or glyphs[start].gap > 0 or before not in "0123456789."
+    return is_start and (not after.isdigit() or glyphs[stop].gap > 0)
