@@ -22,7 +22,7 @@ class Verdict(Enum):
 
 
 class Kind(Enum):
-    """Kinds of findings."""
+    """Kinds of findings, the gravest first."""
 
     NUMBER = "another number"
     EITHER = "one of several numbers, each of which alone explains the page"

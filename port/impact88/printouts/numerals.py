@@ -68,12 +68,7 @@ def spellings(printed: str, is_angle: bool = False) -> tuple[str, ...]:
     except ArithmeticError:
         return ()
     digits = len(value.as_tuple().digits)
-    shorter = [Decimal(f"{value:.{k}E}") for k in range(digits - 1)]
-    texts = [
-        f"{number.normalize():f}"
-        for number in shorter
-        if abs(number - value) <= abs(value) * Decimal("5e-8")
-    ]
+    texts = [f"{Decimal(f'{value:.{k}E}').normalize():f}" for k in range(digits - 1)]
     plain = f"{value:f}"
     texts += [plain, *(plain + "." * ("." not in plain) + "0" * k for k in (1, 2, 3))]
     by_bits: dict[bytes, str] = {}

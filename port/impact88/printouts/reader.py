@@ -190,8 +190,6 @@ class Reading:
 
     def is_cut(self, name: str, printed: str) -> bool:
         """Return True for a part of a printed number where the rest of it may have been lost."""
-        if name not in self.slots:
-            return False
         read = LEADING_ZERO.sub("", self.slots[name].text)
         front, end = self.extra_blanks[name]
         is_part = bool(CUT_NUMBER.match(read))
@@ -362,10 +360,10 @@ class _Reader:
             five = with_digits if len(with_digits) == len(ANGLES) else numbers
             if len(five) != len(ANGLES):
                 self.own.update(slot.glyphs)
-            else:
-                for angle, word in zip(ANGLES, five, strict=True):
-                    is_torn = any(glyph.gap for glyph in word[1:])
-                    self._add_slot(angle, Slot(word, slot.label, is_torn))
+                return
+            for angle, word in zip(ANGLES, five, strict=True):
+                is_torn = any(glyph.gap for glyph in word[1:])
+                self._add_slot(angle, Slot(word, slot.label, is_torn))
             return
         self.own.update(slot.glyphs)
         if name in self.reading.slots:

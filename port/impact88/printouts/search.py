@@ -112,8 +112,9 @@ def find_scenes(
     columns = {name: _options(reading, name, given, program) for name in INPUTS}
     if missing := [name for name, options in columns.items() if not options]:
         return [], missing
-    spins = [reading.slots[name].label for name in FINAL_SPINS if name in reading.slots]
-    has_spins = spins == ["exact", "exact"]  # M = 4 prints none
+    slots = reading.slots
+    # M = 4 prints no final spins
+    has_spins = all(name in slots and slots[name].label == "exact" for name in FINAL_SPINS)
     ms = [given["M"]] if "M" in given else ["6"] if has_spins else ["4", "6"]
     columns["M"] = [Option("M", m, m, ALIKE * k) for k, m in enumerate(ms)]
     search = _Search(reading, given, program)
@@ -166,11 +167,7 @@ class _Search:
         self.expected = {name: reading.readings(name) for name in names}
         self.sure = [name for name in names if name in slots and slots[name].is_clean]
         self.read = [n for n in INPUTS if n in slots or scene_name(n) not in given]
-        self.clean = [
-            name
-            for name in self.read
-            if (slots[name].is_clean if name in slots else name in reading.replies)
-        ]
+        self.clean = [name for name in self.read if name in slots and slots[name].is_clean]
 
     def slips(self, scene: Recovered) -> list[Option]:
         """Return the slips that a page may have: in an input read cleanly only where a machine

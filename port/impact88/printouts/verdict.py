@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
+from itertools import accumulate, groupby
 from types import MappingProxyType
 from typing import Any
 
@@ -31,7 +32,6 @@ from .page import (
     ROWS,
     SLOT_CELLS,
     TITLES,
-    Cell,
     print_page,
     printed_rows,
 )
@@ -45,19 +45,9 @@ MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
 WORDS = {*re.findall("[A-Z]+", re.sub("{.*?}", "", " ".join(ROWS)))}
 """The words of the page's labels."""
-
-
-def _words_of(cells: Sequence[Cell]) -> list[list[int]]:
-    """Return the cells of each word or mark of the page."""
-    words: list[list[int]] = []
-    for j, cell in enumerate(cells):
-        if cell.kind == "word":
-            words += [[]] if cell.first else []
-            words[-1].append(j)
-    return words
-
-
-WORD_CELLS = _words_of(CELLS)
+_STARTS = [*accumulate(cell.first for cell in CELLS)]
+_CELLS_OF_WORDS = (j for j, cell in enumerate(CELLS) if cell.kind == "word")
+WORD_CELLS = [[*word] for _, word in groupby(_CELLS_OF_WORDS, _STARTS.__getitem__)]
 """The cells of each word or mark of the page."""
 
 

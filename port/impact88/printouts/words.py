@@ -104,8 +104,8 @@ def _summary(verification: Verification) -> str:
 
 def _findings(verification: Verification) -> Iterator[str]:
     """Yield a sentence for each finding, the gravest first."""
-    order = [*Verdict]
-    for finding in sorted(verification.findings, key=lambda f: order.index(VERDICTS[f.kind])):
+    order = [*Kind]
+    for finding in sorted(verification.findings, key=lambda f: order.index(f.kind)):
         yield f"line {verification.line_of(finding.start)}: {sentence_of(finding)}"
 
 
