@@ -168,9 +168,11 @@ class Case:
         numbers = {name: float(text) for name, text in texts.items()}
         if amounts["M"].value == 4:
             texts = POINT_DEFAULTS | texts
-        for name, is_off, words in implausible(values, view, courses(values)):
-            if is_off:
-                more.append(f"{name} = {given[name]}: {words}")
+        more += [
+            f"{name} = {given[name]}: {words}"
+            for name, is_off, words in implausible(values, view, courses(values))
+            if is_off
+        ]
         return cls(
             amounts,
             view,
