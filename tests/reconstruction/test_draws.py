@@ -71,6 +71,12 @@ def _rejection(entries, draws, count, rng):
     return {name: np.broadcast_to(x, count)[keep] for name, x in answer.items()}
 
 
+@pytest.fixture
+def _few_particles(monkeypatch):
+    """For what does not depend on their number."""
+    monkeypatch.setattr("impact88.reconstruction.draws.PARTICLES", 1000)
+
+
 @pytest.mark.parametrize("polar", [False, True])
 def test_draws_are_those_of_rejection(polar):
     entries = _forward_problem(int(polar), polar)
@@ -136,6 +142,7 @@ def test_draws_of_section_vii():
     assert "SA" not in reconstruct(exact, samples=0)[0].intervals
 
 
+@pytest.mark.usefixtures("_few_particles")
 def test_draws_depend_on_the_seed_alone():
     problem = Problem({name: read(name, str(value)) for name, value in RECORDER.items()})
     first, repeat, other = (sample(problem, count=1000, seed=seed) for seed in (0, 0, 1))
@@ -213,6 +220,7 @@ def test_draws_that_fail_contradict_nothing(monkeypatch, change, verdict):
     assert result.verdict == verdict
 
 
+@pytest.mark.usefixtures("_few_particles")
 def test_values_known_exactly_have_no_interval():
     entries = {"M": 4, "MA": 1500, "MB": 1200, "HA": 0, "HB": 90, "SAF": "16 +- .1"}
     result = reconstruct(
