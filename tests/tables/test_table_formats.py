@@ -60,6 +60,17 @@ def columns_of(path: Path) -> dict[str, list[Any]]:
     return columns
 
 
+def file_of(folder: Path, layout: str) -> Path:
+    """Return a file of rows by their names."""
+    words = {"HEAD": LINES[0], "ROW": LINES[1], "SHORT": LINES[1].rpartition(",")[0], " ": "\n"}
+    words["OBJECT"] = json.dumps(SAMPLES[0], separators=(",", ":"))
+    for word, text in words.items():
+        layout = layout.replace(word, text)
+    path = folder / ("bad.jsonl" if layout.startswith("{") else "bad.csv")
+    path.write_bytes(layout.encode(errors="surrogateescape"))
+    return path
+
+
 def solve_table(source, target, *results, units="", **options):
     solver = Solver(str(source), Case.of({"units": units}), results, **options)
     solver.write(str(target))
@@ -135,12 +146,7 @@ def test_standard_output_that_takes_a_part_has_it_all(monkeypatch: pytest.Monkey
     ],
 )
 def test_refused(tmp_path: Path, layout: str, message: str) -> None:
-    words = {"HEAD": LINES[0], "ROW": LINES[1], "SHORT": LINES[1].rpartition(",")[0], " ": "\n"}
-    words["OBJECT"] = json.dumps(SAMPLES[0], separators=(",", ":"))
-    for word, text in words.items():
-        layout = layout.replace(word, text)
-    path = tmp_path / ("bad.jsonl" if layout.startswith("{") else "bad.csv")
-    path.write_bytes(layout.encode(errors="surrogateescape"))
+    path = file_of(tmp_path, layout)
     with pytest.raises(UserError) as error:
         solve_table(path, tmp_path / "out.csv")
     assert message in str(error.value)
@@ -162,12 +168,7 @@ def test_refused(tmp_path: Path, layout: str, message: str) -> None:
 def test_rows_of_another_width_are_bad_rows(
     tmp_path: Path, layout: str, faults: dict[int, str], arithmetic: str
 ) -> None:
-    words = {"HEAD": LINES[0], "ROW": LINES[1], "SHORT": LINES[1].rpartition(",")[0], " ": "\n"}
-    words["OBJECT"] = json.dumps(SAMPLES[0], separators=(",", ":"))
-    for word, text in words.items():
-        layout = layout.replace(word, text)
-    path = tmp_path / ("in.jsonl" if layout.startswith("{") else "in.csv")
-    path.write_text(layout)
+    path = file_of(tmp_path, layout)
     solver = solve_table(path, tmp_path / "out.csv", "VAX", arithmetic=arithmetic)
     assert (solver.rows, solver.bad) == (3, len(faults))
     for listed, (line, fault) in zip(solver.listed, faults.items(), strict=True):

@@ -215,11 +215,11 @@ class Solver:
                 is_other |= np.array([len(str(cell)) > MAX_LENGTH for cell in column], bool)
         rows = _Rows(numbers, cells, values, {}, {})
         for at in np.flatnonzero(is_other).tolist():
-            where = self.table.place(numbers[at])
+            place = self.table.place(numbers[at])
             try:
                 if fault := self.table.faults.get(numbers[at]):
-                    raise UserError(fault, where)
-                rows.texts[at] = self._row_texts(cells, at, where)
+                    raise UserError(fault, place)
+                rows.texts[at] = self._row_texts(cells, at, place)
             except UserError as error:
                 rows.bad[at] = str(error)
             else:
