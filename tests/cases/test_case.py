@@ -156,6 +156,8 @@ def test_friction_as_a_share_of_the_critical() -> None:
         ({"MA": "199 kg"}, "no vehicle has that mass"),
         ({"MA": "61 t"}, "no vehicle has that mass"),
         ({"UX": "501 km/h"}, "no vehicle is as fast"),
+        ({"WA": "-21"}, "WA = -21: no vehicle spins as fast"),
+        ({"WA": "191 rpm"}, "no vehicle spins as fast"),
         ({"DA": "15.1 m"}, "more than 15 m"),
         ({"EM": "0"}, "no moment is EM = 1"),
         ({"TB": "46"}, "TB = 46: B moves more than 45° off the way it faces"),
@@ -165,7 +167,7 @@ def test_friction_as_a_share_of_the_critical() -> None:
     ],
 )
 def test_plausibility(changes: dict[str, str], remark: str) -> None:
-    plain = {"MA": "1500 kg", "UX": "499 km/h", "UY": "0", "DA": "14.9 m", "EM": "1"}
+    plain = {"MA": "1500 kg", "UX": "499 km/h", "UY": "0", "DA": "14.9 m", "EM": "1", "WA": "-20"}
     angles = {"VX": "9", "VY": "0", "TB": "45", "TA": "180"}
     case = Case.of({"units": "metric", **plain, **angles, "IA": "2000"})
     assert not case.remarks

@@ -41,7 +41,7 @@ table = {**columns, **impact88.solve(columns, "VAX VAY VBX VBY WAF WBF PX")}
 assert impact88.compare(table).passed
 assert not impact88.compare({**table, "PX": table["PX"] * 1.001}).passed
 known = {name: scene[name] for name in scene if name != "UX"} | {"VAX": float(table["VAX"][0])}
-assert "PX" in impact88.reconstruct(known)[0].values
+assert "PX" in impact88.reconstruct(known, samples=0)[0].values
 print(impact88.accelerated, "PX", impact88.names.RESULTS["PX"].unit)
 """
 

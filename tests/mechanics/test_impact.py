@@ -184,13 +184,14 @@ def test_columns_that_are_not_aligned_or_read_only():
     assert_same_bits(prepared("E", "VAX", scene)(rows), together)
 
 
-@pytest.mark.parametrize("threads", [1, 2, 3])
-def test_threads_and_layouts_change_no_bit(threads):
+def test_threads_and_layouts_change_no_bit():
     g = mixed_scenes(50_000)
+    reversed_g = {name: x[::-1] for name, x in g.items()}
     results = solve(g, "VAX STATUS COND", threads=1)
-    assert_same_bits(solve(g, "VAX STATUS COND", threads=threads), results)
-    backward = solve({name: x[::-1] for name, x in g.items()}, "VAX STATUS COND", threads=threads)
-    assert_same_bits({n: x[::-1] for n, x in backward.items()}, results)
+    for threads in (2, 3):
+        assert_same_bits(solve(g, "VAX STATUS COND", threads=threads), results)
+        backward = solve(reversed_g, "VAX STATUS COND", threads=threads)
+        assert_same_bits({n: x[::-1] for n, x in backward.items()}, results)
 
 
 FRAMES = ["pandas", "polars", "pyarrow"]

@@ -449,11 +449,14 @@ def test_a_number_with_a_hole_is_open(old: str, new: str, verdict: Verdict) -> N
     assert single(PAGE.replace(old, new)).verdict is verdict
 
 
-@pytest.mark.parametrize("part", [slice(0, 1), slice(-1, None), slice(0, 2), slice(-2, None)])
-def test_lost_characters_that_leave_blanks_accuse_nothing(part: slice) -> None:
+@pytest.mark.parametrize(
+    ("part", "step"),
+    [(slice(0, 1), 1), (slice(-1, None), 1), (slice(0, 2), 3), (slice(-2, None), 3)],
+)
+def test_lost_characters_that_leave_blanks_accuse_nothing(part: slice, step: int) -> None:
     """The beginning or the end of a number did not print. How far the first angle is from the
     margin is not known."""
-    for name, number in single(BODY).numbers.items():
+    for name, number in [*single(BODY).numbers.items()][::step]:
         lost = number.printed[part]
         torn = [*number.printed]
         torn[part] = " " * len(lost)

@@ -17,7 +17,7 @@ from impact88.program.run import run
 from impact88.program.scene import sample
 
 LISTING = packaged_text("impact88.legacy", "impact.bas")
-SCENES = [case["scene"] for case in captures.scenes()[::80]]
+SCENES = [case["scene"] for case in captures.scenes()[::200]]
 COLUMNS = {name: [scene[name] for scene in SCENES] for name in SCENE}
 
 

@@ -148,3 +148,14 @@ def test_momentum_of_bodies_whose_dimensions_are_not_given():
 def test_what_cannot_be_used(change, words):
     with pytest.raises(UserError, match=words):
         reconstruct({**INTERSECTION, **change})
+
+
+@pytest.mark.parametrize(("angle", "follows"), [(0, False), (5, True)])
+def test_a_central_collision_without_em(angle: float, follows: bool) -> None:
+    entries = dict.fromkeys(("MU", "TA", "TB", "GA", "PB", "WA", "WB", "VAY", "VBY"), 0)
+    entries |= {"E": 0.1, "PA": angle, "DA": 6, "DB": 6, "MA": 95, "MB": 110, "IA": 1900}
+    entries |= {"IB": 2400, "VAX": "-5 +- 1", "VBX": "-6 +- 1"}
+    result = reconstruct(entries, samples=0)[0]
+    assert result.verdict == "agrees"
+    assert ("EM" in (*result.values, *result.undetermined)) is follows
+    assert any("EM does not follow" in text for text in result.remarks) is not follows

@@ -84,7 +84,7 @@ def test_findings_are_marked_in_the_text() -> None:
     assert re.search(r'<mark class="differs" title="[^"]*-13.263[^"]*">-13.268</mark>', html)
     assert "paper.txt, printout 1" in html
     assert exhibit.digest in html
-    assert "MA = 143.5" in html
+    assert "MA=143.5 MB=95.8" in html
     assert "\\r" not in html
 
 

@@ -49,5 +49,5 @@ def scan(grey: np.ndarray, angle: float = 0.0, blur: float = 0.6, noise: float =
 def encode(grey: np.ndarray, form: str = "PNG", mode: str = "L") -> bytes:
     """Return a picture as a file."""
     file = io.BytesIO()
-    PIL.Image.fromarray(grey.astype(np.uint8)).convert(mode).save(file, form)
+    PIL.Image.fromarray(grey.astype(np.uint8)).convert(mode).save(file, form, compress_level=1)
     return file.getvalue()

@@ -60,6 +60,17 @@ def columns_of(path: Path) -> dict[str, list[Any]]:
     return columns
 
 
+def file_of(folder: Path, layout: str) -> Path:
+    """Return a file of rows by their names."""
+    words = {"HEAD": LINES[0], "ROW": LINES[1], "SHORT": LINES[1].rpartition(",")[0], " ": "\n"}
+    words["OBJECT"] = json.dumps(SAMPLES[0], separators=(",", ":"))
+    for word, text in words.items():
+        layout = layout.replace(word, text)
+    path = folder / ("bad.jsonl" if layout.startswith("{") else "bad.csv")
+    path.write_bytes(layout.encode(errors="surrogateescape"))
+    return path
+
+
 def solve_table(source, target, *results, units="", **options):
     solver = Solver(str(source), Case.of({"units": units}), results, **options)
     solver.write(str(target))
@@ -121,9 +132,6 @@ def test_standard_output_that_takes_a_part_has_it_all(monkeypatch: pytest.Monkey
 @pytest.mark.parametrize(
     ("layout", "message"),
     [
-        ("HEAD ROW ROW,1 ROW", "line 3: has 22 fields; expected 21"),
-        ("HEAD ROW ROW SHORT", "line 4: has 20 fields"),
-        ("HEAD ROW,1 SHORT ROW", "line 2: has 22 fields"),
         ("MA,MA 1,2", "'MA' twice"),
         ("MA,,MB 1,2,3", "the headings have one that is empty"),
         ("", "has no line of 1 to 10,000 headings"),
@@ -133,23 +141,41 @@ def test_standard_output_that_takes_a_part_has_it_all(monkeypatch: pytest.Monkey
         ("{}", "has no line of 1 to 10,000 headings"),
         ("{3 ", "line 1: is '{3\\n'; expected a JSON object of numbers and texts"),
         ('OBJECT {"MA": ', "line 2: is '{\"MA\":\\n'; expected a JSON object"),
-        ('OBJECT {"car":1} ', "line 2: 'car' is not in the first row"),
         ('{"MA":[1]} ', "line 1: is '{\"MA\":[1]}\\n'; expected"),
         ("{" + "[" * 100_000, "expected a JSON object"),
     ],
 )
 def test_refused(tmp_path: Path, layout: str, message: str) -> None:
-    words = {"HEAD": LINES[0], "ROW": LINES[1], "SHORT": LINES[1].rpartition(",")[0], " ": "\n"}
-    words["OBJECT"] = json.dumps(SAMPLES[0], separators=(",", ":"))
-    for word, text in words.items():
-        layout = layout.replace(word, text)
-    path = tmp_path / ("bad.jsonl" if layout.startswith("{") else "bad.csv")
-    path.write_bytes(layout.encode(errors="surrogateescape"))
+    path = file_of(tmp_path, layout)
     with pytest.raises(UserError) as error:
         solve_table(path, tmp_path / "out.csv")
     assert message in str(error.value)
     assert path.name in str(error.value)
     assert not (tmp_path / "out.csv").exists()
+
+
+@pytest.mark.usefixtures("_engine")
+@pytest.mark.parametrize(
+    ("layout", "faults"),
+    [
+        ("HEAD ROW ROW,1 ROW", {3: "has 22 fields; expected 21, as in the headings"}),
+        ("HEAD ROW ROW SHORT", {4: "has 20 fields"}),
+        ("HEAD ROW,1 SHORT ROW", {2: "has 22 fields", 3: "has 20 fields"}),
+        ('OBJECT {"car":1} OBJECT', {2: "'car' is not in the first row; expected its names"}),
+    ],
+)
+@pytest.mark.parametrize("arithmetic", ARITHMETICS)
+def test_rows_of_another_width_are_bad_rows(
+    tmp_path: Path, layout: str, faults: dict[int, str], arithmetic: str
+) -> None:
+    path = file_of(tmp_path, layout)
+    solver = solve_table(path, tmp_path / "out.csv", "VAX", arithmetic=arithmetic)
+    assert (solver.rows, solver.bad) == (3, len(faults))
+    for listed, (line, fault) in zip(solver.listed, faults.items(), strict=True):
+        assert listed.startswith(f"{path}, line {line}: {fault}")
+    rows = read_rows(tmp_path / "out.csv")
+    for line, row in enumerate(rows, 2 - (path.suffix == ".jsonl")):
+        assert (row["UX"], row["VAX"]) == ("", "") if line in faults else float(row["VAX"])
 
 
 @pytest.mark.usefixtures("_engine")

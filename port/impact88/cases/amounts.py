@@ -203,7 +203,7 @@ _MARKS = {"around": TOLERANCE, "uniform": ".."}
 """Marks between the numbers of kinds."""
 
 
-class Number(NamedTuple):
+class Numeral(NamedTuple):
     """A number as written: its exact value, its unit, and its digits ("" of feet and inches)."""
 
     value: Fraction
@@ -264,7 +264,7 @@ def normalize(text: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def parse(rule: str, words: str) -> tuple[Any, tuple[Number, ...]]:
+def parse(rule: str, words: str) -> tuple[Any, tuple[Numeral, ...]]:
     """Return the kind of a `normalize`d amount, one of `Amount` or "around" for a half width, and
     its numbers.
 
@@ -285,7 +285,7 @@ def parse(rule: str, words: str) -> tuple[Any, tuple[Number, ...]]:
     return kind, tuple(_number(rule, part) for part in parts)
 
 
-def _number(rule: str, text: str) -> Number:
+def _number(rule: str, text: str) -> Numeral:
     """Return the one number of a text. Raises ValueError, and OverflowError beyond the range of
     doubles."""
     match = _NUMBER.fullmatch(text.strip())
@@ -299,7 +299,7 @@ def _number(rule: str, text: str) -> Number:
     if inches:
         value = 12 * value + Fraction("-" * digits.startswith("-") + inches)
     unit = unit_of(rule, inch or symbol) if inch or symbol else None
-    return Number(value, unit, "" if inches else plain)
+    return Numeral(value, unit, "" if inches else plain)
 
 
 def _amount(name: str, words: str, view: View) -> Amount:

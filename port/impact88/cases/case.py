@@ -162,21 +162,23 @@ class Case:
             view = View.of(**written)
             amounts, remarks = _read_entries(given, view, places)
             values = {n: a.value for n, a in amounts.items() if not math.isnan(a.value)}
-            texts, more = _nominal_digits(amounts, values)
+            texts, further_remarks = _nominal_digits(amounts, values)
         except UserError as error:
             raise error if error.where else UserError(str(error), source) from None
         numbers = {name: float(text) for name, text in texts.items()}
         if amounts["M"].value == 4:
             texts = POINT_DEFAULTS | texts
-        for name, is_off, words in implausible(values, view, courses(values)):
-            if is_off:
-                more.append(f"{name} = {given[name]}: {words}")
+        further_remarks += [
+            f"{name} = {given[name]}: {words}"
+            for name, is_off, words in implausible(values, view, courses(values))
+            if is_off
+        ]
         return cls(
             amounts,
             view,
             texts,
             numbers,
-            (*remarks, *more),
+            (*remarks, *further_remarks),
             written,
             source,
             tuple(

@@ -21,7 +21,7 @@ from typing import Any
 
 from ..decimals import to_text
 from ..errors import UserError
-from ..names import INERTIA, LENGTH, MASS, VELOCITY, quantity
+from ..names import INERTIA, LENGTH, MASS, SPIN, VELOCITY, quantity
 from .amounts import Amount
 from .motion import Amounts
 from .units import POUND, View
@@ -37,6 +37,7 @@ OFFSET = 1206.0  # lb-ft-s², as published
 LIMITS = {
     MASS: (200.0, 60_000.0, "no vehicle has that mass (200 kg to 60 t)"),
     VELOCITY: (0.0, 500 / 3.6, "no vehicle is as fast (500 km/h)"),
+    SPIN: (0.0, 20.0, "no vehicle spins as fast (20 rad/s, three turns a second)"),
     LENGTH: (0.0, 15.0, "the contact point is more than 15 m from the center of gravity"),
     # a motorcycle has .65 m, a car .8 to 1.6, a tractor with semitrailer 5.2
     INERTIA: (0.5**2, 6.0**2, "no vehicle has that radius of gyration (0.5 to 6 m)"),
@@ -120,10 +121,9 @@ def implausible(
     for name, course in courses.items():
         if name in values:
             front = values[name] + 180.0 * (name == "TA")
-            sideslip = abs((course - front + 180.0) % 360.0 - 180.0)
             yield (
                 name,
-                (sideslip > MAX_SIDESLIP) & is_body,
+                (abs((course - front + 180.0) % 360.0 - 180.0) > MAX_SIDESLIP) & is_body,
                 f"{name[1]} moves more than 45° off the way it faces (A faces TA + 180 and B faces "
                 "TB in the listing's axes); are velocities and headings in one convention? (axes, "
                 "headings)",

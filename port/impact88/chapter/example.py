@@ -44,7 +44,7 @@ STATED_LOSS = 40.0  # percent: ΔT = 0.4 "follows from Table 2 for this type of 
 
 
 @dataclass(frozen=True)
-class Number:
+class Result:
     """A number of the example: what it is, its value, and what the chapter prints, if it does."""
 
     name: str
@@ -68,7 +68,7 @@ class Step:
 
     title: str
     equation: str
-    numbers: tuple[Number, ...]
+    numbers: tuple[Result, ...]
     remark: str = ""
 
     def __getitem__(self, name: str) -> float:
@@ -99,15 +99,15 @@ def steps() -> tuple[Step, ...]:
 
 def _of_both(
     names: str, meaning: str, values: Sequence[float], printed: str = ""
-) -> tuple[Number, ...]:
+) -> tuple[Result, ...]:
     """Return the numbers for a velocity of A and one of B."""
     rows = zip(names.split(), "AB", values, printed.split() or (None, None), strict=True)
-    return tuple(Number(n, f"{meaning} of {v}", value, "ft/s", p) for n, v, value, p in rows)
+    return tuple(Result(n, f"{meaning} of {v}", value, "ft/s", p) for n, v, value, p in rows)
 
 
 def _truth(truth: dict[str, float]) -> Step:
     velocities = (
-        Number(name, "", truth[name], "rad/s" if name.startswith("W") else "ft/s")
+        Result(name, "", truth[name], "rad/s" if name.startswith("W") else "ft/s")
         for name in FINAL_VELOCITIES
     )
     changes = (truth["DVA"], truth["DVB"])
@@ -118,7 +118,7 @@ def _truth(truth: dict[str, float]) -> Step:
             *_of_both("UX VY", "initial velocity", (TABLE_3["UX"], TABLE_3["VY"])),
             *velocities,
             *_of_both("DVA DVB", "true velocity change", changes, "39.1 25.9"),
-            Number("LOSS", "energy lost", truth["LOSS"], "percent", "37.4"),
+            Result("LOSS", "energy lost", truth["LOSS"], "percent", "37.4"),
         ),
     )
 
@@ -153,7 +153,7 @@ def _equation_19(truth: dict[str, float], momentum: Step) -> tuple[Step, Step]:
         ("printed", "as printed, no 2/3", changes(true, truth["LOSS"], AS_PRINTED)),
     )
     alternatives = [
-        Number(f"DV{vehicle} {key}", f"{vehicle}: {meaning}", value, "ft/s")
+        Result(f"DV{vehicle} {key}", f"{vehicle}: {meaning}", value, "ft/s")
         for key, meaning, pair in variants
         for vehicle, value in zip("AB", pair, strict=True)
     ]
@@ -190,10 +190,10 @@ def _coefficients(momentum: Step) -> Step:
         "Coefficients from both final spins, WAF -2.9 and WBF -0.9 rad/s",
         "Equations 15, 16 and 18",
         (
-            Number("E", "coefficient of restitution", v["E"], "1"),
-            Number("MUP", "P_t/P_n", v["MUP"], "1"),
-            Number("EM", "moment coefficient", v["EM"], "1"),
-            Number("17", "residual of Equation 17", a_turns - b_turns, "slug-ft2/s"),
+            Result("E", "coefficient of restitution", v["E"], "1"),
+            Result("MUP", "P_t/P_n", v["MUP"], "1"),
+            Result("EM", "moment coefficient", v["EM"], "1"),
+            Result("17", "residual of Equation 17", a_turns - b_turns, "slug-ft2/s"),
         ),
         '"Generally, these estimates are not very accurate": Table 3 has e = .25, μ = .89, '
         "e_m = -.9. The estimates are one too many and violate the angular momentum; a "

@@ -36,7 +36,7 @@ MEASURED = "measured"
 FILES = {NHTSA: "nhtsa-oblique-offset.csv", IIHS: "iihs-small-overlap.csv"}
 
 
-class Check(NamedTuple):
+class PublishedValue(NamedTuple):
     """One number of a published test, reported by a model or measured, and the one computed."""
 
     source: str
@@ -53,7 +53,7 @@ class Check(NamedTuple):
         return self.computed - self.reported
 
 
-def checks() -> list[Check]:
+def checks() -> list[PublishedValue]:
     """Return every number of the published tests beside the one computed.
 
     Examples
@@ -72,7 +72,7 @@ def scenes() -> dict[str, dict[str, float]]:
     return oblique | {f"{IIHS} {row['test']}": iihs_scene(row) for row in _rows(IIHS)}
 
 
-def medians(checks: Sequence[Check]) -> list[tuple[str, str, str, str, int, float, float]]:
+def medians(checks: Sequence[PublishedValue]) -> list[tuple[str, str, str, str, int, float, float]]:
     """Return source, quantity, unit, kind, count, and the median and the largest size of the
     differences, for each source and quantity."""
     groups: dict[tuple[str, str, str, str], list[float]] = {}
@@ -116,7 +116,7 @@ def nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
     }
 
 
-def _nhtsa() -> list[Check]:
+def _nhtsa() -> list[PublishedValue]:
     checks = []
     for row in _rows(NHTSA):
         result = solve(nhtsa_scene(row), ("MUC", "WAF", "DVA", "WBF", "DVB"))
@@ -130,7 +130,9 @@ def _nhtsa() -> list[Check]:
         )
         for quantity, unit, column, value in numbers:
             report = float(row[column])
-            checks.append(Check(NHTSA, row["test"], quantity, unit, PUBLISHED, report, value))
+            checks.append(
+                PublishedValue(NHTSA, row["test"], quantity, unit, PUBLISHED, report, value)
+            )
     return checks
 
 
@@ -157,7 +159,7 @@ def iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
     return scene | {"MU": float(evaluate(impact, ("MU",))[0]["MU"])}
 
 
-def _iihs() -> list[Check]:
+def _iihs() -> list[PublishedValue]:
     checks = []
     for row in _rows(IIHS):
         scene = iihs_scene(row)
@@ -169,5 +171,7 @@ def _iihs() -> list[Check]:
         )
         for quantity, unit, column, value in numbers:
             report = float(row[column])
-            checks.append(Check(IIHS, row["test"], quantity, unit, MEASURED, report, value))
+            checks.append(
+                PublishedValue(IIHS, row["test"], quantity, unit, MEASURED, report, value)
+            )
     return checks

@@ -60,7 +60,7 @@ FILE = option(
     "file", nargs="?", type=InputPath, metavar="FILE", help="the collision; - is standard input"
 )
 SAMPLE = choice("--sample", ("1", "2", "3"), "the scene of a published run")
-SET = texts("--set", "NAME=VALUE", "change an entry; nothing removes it")
+SET = texts("--set", "NAME=VALUE", "change an entry; an empty VALUE removes it")
 UNITS = choice("--units", ("us", "chapter", "metric", "si"), "units of numbers without one")
 CASE = (FILE, SAMPLE, SET, UNITS)
 """Options that give one case, see `case_of`."""

@@ -42,16 +42,15 @@ def read_table(table: Any) -> Columns:
     if isinstance(table, str | os.PathLike):
         columns = _read_file(os.fspath(table))
     elif isinstance(table, Mapping) or hasattr(table, "columns"):
-        names = getattr(table, "columns", table)
-        columns = {str(name): np.atleast_1d(np.asarray(table[name])) for name in names}
+        columns = {str(n): np.atleast_1d(table[n]) for n in getattr(table, "columns", table)}
     elif isinstance(table, Sequence):
         columns = _columns_of(table)
     else:
         raise UserError(f"{quoted(table)} is no table; expected a path, columns or rows")
-    size = max((len(column) for column in columns.values()), default=0)
+    size = max(map(len, columns.values()), default=0)
     for name, column in columns.items():
         if len(column) == 1:
-            columns[name] = np.repeat(np.asarray(column), size)
+            columns[name] = np.repeat(column, size)
         elif len(column) != size:
             raise UserError(f"column {quoted(name)} has {len(column)} rows; expected {size}")
     if not size:
@@ -61,11 +60,10 @@ def read_table(table: Any) -> Columns:
 
 def _read_file(path: str) -> Columns:
     table = tables.read_table(path, digits=True)
-    columns = zip(*(block.columns for block in table.blocks), strict=True)
-    return {
-        name: np.concatenate([*map(np.asarray, parts)])
-        for name, parts in zip(table.names, columns, strict=False)
-    }
+    columns = [*zip(*(block.columns for block in table.blocks), strict=True)]
+    for number, fault in table.faults.items():
+        raise UserError(fault, table.place(number))
+    return {name: np.concatenate(parts) for name, parts in zip(table.names, columns, strict=False)}
 
 
 def _columns_of(rows: Sequence[Any]) -> Columns:
@@ -73,7 +71,7 @@ def _columns_of(rows: Sequence[Any]) -> Columns:
     for place, row in enumerate(rows, 1):
         if not isinstance(row, Mapping):
             raise UserError(f"row {place} of the table is no mapping of names to numbers")
-    names = list(dict.fromkeys(name for row in rows for name in row))
+    names = dict.fromkeys(name for row in rows for name in row)
     return {name: np.array([str(row.get(name, "")) for row in rows]) for name in names}
 
 

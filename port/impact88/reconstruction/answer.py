@@ -23,7 +23,7 @@ from .densities import sampling_error
 from .draws import Sample, push_forward, sample
 from .fit import EXACT_TOL, RESULT_STEP, STEP, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, EVERY, IMPULSES, SPEEDS, VEHICLES, Array
-from .known import as_amounts
+from .known import WITHOUT_MOMENT, as_amounts
 from .laws import MissedLaw, missed_laws
 from .problem import ANGLES, RANGES, WIDEST, Problem, signs_of_friction, unwrap_angles
 
@@ -37,6 +37,9 @@ MAX_NAMED = 3
 INTERVAL = (0.05, 0.95)
 NARROWED = 0.1  # an interval that ends as near to an end of an assumed range of 1 reaches it
 
+ANY_MOMENT = (
+    "EM does not follow: the impact turns neither vehicle, so that every EM fits; give EM = 1"
+)
 NO_APPROACH = "the contact points do not approach before this impact (gn = 0): nothing collides"
 OUTSIDE = (
     "too few random draws lie within all limits: intervals are to first order, and what is left "
@@ -359,7 +362,6 @@ def _rank(fit: Fit) -> tuple[Any, ...]:
     """Return what impacts are ordered by: physics, misfit, friction, and for equal ones numbers
     that no choice of axes, units or names changes the order of."""
     numbers = [fit.value(name) for name in ("KI", "E", "EM", "DVA", "EL")]
-    numbers = [x for x in numbers if math.isfinite(x)]
     misfit = float(f"{max(fit.squares, TIE):.6e}")
     ties = [float(f"{x:.5e}") if abs(x) > TIE else 0.0 for x in numbers]
     return (misfit, bool(fit.nearest_limits(-STEP)), *ties)
@@ -402,10 +404,13 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
     problem = fit.problem
     names = [name for name in result_names(problem) if _exists(fit, name)]
     open_names = [name for name in names if fit.is_open(name)]
-    names = [name for name in names if name not in open_names]
-    values = {name: _without_noise(name, fit.value(name), problem.size(name)) for name in names}
+    values = {
+        name: _without_noise(name, fit.value(name), problem.size(name))
+        for name in names
+        if name not in open_names
+    }
     count = fit.open_directions.shape[1]
-    slopes = {name: fit.slopes(name)[count:] for name in names}
+    slopes = {name: fit.slopes(name)[count:] for name in values}
     intervals: dict[str, tuple[float, float]] = {}
     drivers: dict[str, dict[str, float]] = {}
     if verdict not in ADVERSE:  # the numbers of an adverse one settle nothing
@@ -418,6 +423,8 @@ def _describe(fit: Fit, verdict: str) -> Reconstruction:
     remarks = [*problem.remarks]
     if abs(fit.value("gn")) <= TIE * problem.speed:
         remarks.append(NO_APPROACH)
+    if "EM" in result_names(problem) and not _exists(fit, "EM"):
+        remarks.append(ANY_MOMENT)
     vehicles = {n: value for n in VEHICLES if math.isfinite(value := fit.value(n))}
     return Reconstruction(
         values=values | vehicles,
@@ -457,9 +464,12 @@ def result_names(problem: Problem) -> list[str]:
 
 
 def _exists(fit: Fit, name: str) -> bool:
-    """Return False for quotients of 0 and for the course of a vehicle at rest."""
+    """Return False for quotients of 0, for the course of a vehicle at rest, and for the EM of an
+    impact in which no moment changes any spin."""
+    value = fit.value(name)
     is_at_rest = name in COURSES and fit.value(COURSES[name]) < TIE * fit.problem.speed
-    return math.isfinite(fit.value(name)) and not is_at_rest
+    is_any_moment = (name, round(value, 9)) == ("EM", WITHOUT_MOMENT)
+    return math.isfinite(value) and not (is_at_rest or is_any_moment)
 
 
 def _without_noise(name: str, value: float, size: float) -> float:
@@ -525,8 +535,8 @@ def _at_odds(tests: Mapping[str, Test]) -> tuple[str, ...]:
 def _drivers(fit: Fit, slope: Array) -> dict[str, float]:
     """Return the measured values' shares of the variance of a result, largest first."""
     squares = np.square(slope)
-    shares = zip((item.name for item in fit.search.measured), squares / squares.sum(), strict=True)
-    large = {name: float(share) for name, share in shares if share >= CHECKED}
+    pairs = zip(fit.search.measured, squares / squares.sum(), strict=True)
+    large = {item.name: float(share) for item, share in pairs if share >= CHECKED}
     return dict(sorted(large.items(), key=lambda pair: -pair[1]))
 
 

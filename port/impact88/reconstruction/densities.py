@@ -98,10 +98,10 @@ def draw_correlated(
             )
         row, column = names.index(first), names.index(second)
         matrix[row, column] = matrix[column, row] = value
-    middle = np.zeros(len(names))
     try:
-        normal = rng.multivariate_normal(middle, matrix, count, "raise", method="eigh")
+        normal = rng.multivariate_normal(
+            np.zeros(len(names)), matrix, count, "raise", method="eigh"
+        )
     except ValueError:
         raise UserError("these correlations contradict one another") from None
-    columns = [from_normal(item, z) for item, z in zip(amounts.values(), normal.T, strict=True)]
-    return np.stack(columns, 1)
+    return np.stack(list(map(from_normal, amounts.values(), normal.T)), 1)

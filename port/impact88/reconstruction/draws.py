@@ -99,8 +99,7 @@ def draw_prior(problem: Problem, count: int, rng: Generator) -> tuple[Array, Arr
     with np.errstate(all="ignore"):
         weights += problem.log_density(impacts)
     values = impacts | columns
-    rows = [np.broadcast_to(values[name], count) for name in problem.names]
-    return np.stack(rows, 1), weights
+    return np.stack([np.broadcast_to(values[name], count) for name in problem.names], 1), weights
 
 
 def log_limits(problem: Problem, points: Array) -> Array:
@@ -199,10 +198,10 @@ def push_forward(fit: Fit, count: int, seed: int = 0) -> Sample | None:
     from its own density. Draws that physics forbids do not count; None if few are left."""
     rng = np.random.default_rng([seed, 1])
     search, problem = fit.search, fit.problem
-    columns = [
-        (draw(item.amount, count, rng) - item.amount.value) / item.sd for item in search.measured
-    ]
-    moves = np.stack(columns, 1)
+    moves = np.stack(
+        [(draw(item.amount, count, rng) - item.amount.value) / item.sd for item in search.measured],
+        1,
+    )
     points, is_impact = search.follow(fit.point + moves @ fit.sensitivity.T, moves)
     points = points[is_impact]
     margins = problem.margins(problem.impacts(points))

@@ -129,8 +129,8 @@ def _readings(values: dict[str, Array]) -> list[dict[str, Array]]:
 def _solve(v: Mapping[str, Array], names: Sequence[str], shape: tuple[int, ...]) -> Solution:
     """Return the unknowns of elements, in their shape."""
     bodies = {name: v[name] for name in VEHICLES}
-    known = [name for name in MOTION if name in v]
-    speed = max((float(np.abs(v[name]).max(initial=0.0)) for name in known), default=0.0) or 1.0
+    speeds = (float(np.abs(v[name]).max(initial=0.0)) for name in MOTION if name in v)
+    speed = max(speeds, default=0.0) or 1.0
     mass = 1.0 / (1.0 / v["MA"] + 1.0 / v["MB"])
     sizes = np.stack([np.ones_like(mass)] * 6 + [mass] * 3) * speed
     columns = _columns(bodies, sizes)

@@ -120,8 +120,8 @@ def _law(law: MissedLaw, view: View) -> str:
 
 def checks(result: Reconstruction, view: View = PLAIN) -> tuple[str, ...]:
     """Return the known values that others check, beside them, a phrase each."""
-    names = [name for name, test in result.tests.items() if math.isfinite(test.by_others)]
-    return tuple(check(result, name, view) for name in names)
+    tests = result.tests.items()
+    return tuple(check(result, name, view) for name, x in tests if math.isfinite(x.by_others))
 
 
 def check(result: Reconstruction, name: str, view: View = PLAIN) -> str:

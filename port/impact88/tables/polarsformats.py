@@ -72,22 +72,17 @@ def read_excel(path: str) -> Table:
     for first, row in enumerate(texts.head(MAX_HEADING_ROW).rows(), 1):
         names = [cell or "" for cell in row]
         if any(heading_name(name)[0] for name in names):
-            cells = numbers[first:], texts[first:]
+            numbers, texts = numbers[first:], texts[first:]
             break
     else:
         raise UserError("has no row with names of a scene; expected headings such as UX", path)
     while not names[-1].strip():
         names.pop()
-    columns = zip(names, *cells, strict=False)
-    frame = polars().DataFrame([_merge_cells(*column) for _, *column in columns])
-    return Table(names, _blocks(frame, first + 1), path)
-
-
-def _merge_cells(numbers: Any, texts: Any) -> Any:
-    """Return a sheet's column: numbers, or texts where a cell is one."""
-    if numbers.null_count() == texts.null_count():
-        return numbers
-    return numbers.cast(str).fill_null(texts)
+    columns = [
+        number if number.null_count() == text.null_count() else number.cast(str).fill_null(text)
+        for _, number, text in zip(names, numbers, texts, strict=False)
+    ]
+    return Table(names, _blocks(polars().DataFrame(columns), first + 1), path)
 
 
 def frame_of(columns: Columns) -> Any:
@@ -95,9 +90,9 @@ def frame_of(columns: Columns) -> Any:
     polars would put in quotes."""
     series = []
     for name, column in columns.items():  # expressions hang after a damaged Parquet file
-        is_list = isinstance(column, list)
-        cells = [None if cell == "" else cell for cell in column] if is_list else column
-        series.append(polars().Series(name, cells, strict=False, nan_to_null=not is_list))
+        if isinstance(column, list):
+            column = [None if cell == "" else cell for cell in column]
+        series.append(polars().Series(name, column, strict=False, nan_to_null=True))
     return polars().DataFrame(series)
 
 

@@ -127,7 +127,7 @@ class Solver:
         Raises
         ------
         UserError
-            For a file that cannot be written, and for rows that are not as wide as the headings.
+            For a file that cannot be written, and for damage that hides the rows behind it.
         """
         as_text = is_csv(target)
 
@@ -215,13 +215,16 @@ class Solver:
                 is_other |= np.array([len(str(cell)) > MAX_LENGTH for cell in column], bool)
         rows = _Rows(numbers, cells, values, {}, {})
         for at in np.flatnonzero(is_other).tolist():
+            place = self.table.place(numbers[at])
             try:
-                rows.texts[at] = self._row_texts(cells, at, self.table.place(numbers[at]))
+                if fault := self.table.faults.get(numbers[at]):
+                    raise UserError(fault, place)
+                rows.texts[at] = self._row_texts(cells, at, place)
             except UserError as error:
                 rows.bad[at] = str(error)
-                continue
-            for name, text in rows.texts[at].items():
-                values[name][at] = float(text)
+            else:
+                for name, text in rows.texts[at].items():
+                    values[name][at] = float(text)
         return rows
 
     def _row_texts(self, columns: Columns, at: int, where: str) -> Mapping[str, str]:

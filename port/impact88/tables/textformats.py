@@ -1,7 +1,7 @@
 """Tables as text: CSV and JSON Lines, read a block of rows at a time, and written.
 
-polars (extra ``tables``) splits plain CSV; the csv module takes every file, names the line of a row
-that is not as wide as the headings, and gives the same numbers.
+polars (extra ``tables``) splits plain CSV; the csv module takes every file, finds the rows that are
+not as wide as the headings, and gives the same numbers.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ Rows = Iterator[tuple[int, Sequence[Any]]]
 
 CHUNK_BYTES = 8_000_000  # of CSV read at a time: some 60,000 rows, more gain nothing
 BLOCK_ROWS = 20_000  # of other formats
+_POINTS = str.maketrans(",", ".", ".")  # of a number with a decimal comma
 _HEADING = re.compile(r"\s*(\w+)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 MAX_COLUMNS = 10_000  # beyond it a file is no table of scenes, and splitting it takes long
 
@@ -48,12 +49,13 @@ class Table(NamedTuple):
     """A table being read.
 
     ``names``: its headings; ``blocks``: its rows; ``where``: its name in messages; ``counts``: what
-    row numbers count, "line" or "row"."""
+    row numbers count, "line" or "row"; ``faults``: by number, why rows read so far are empty."""
 
     names: Sequence[str]
     blocks: Iterator[Block]
     where: str = "table"
     counts: str = "row"
+    faults: Mapping[int, str] = {}
 
     def place(self, number: int) -> str:
         """Return the place of a row for messages."""
@@ -106,57 +108,59 @@ def read_csv(path: str) -> Table:
     check_text(head, where, "CSV")
     delimiter = max(",;\t", key=head.decode(errors="replace").count)
     csv.field_size_limit(LONGEST_LINE)
-    _, names = next(_csv_rows([head], delimiter, where, 1), (1, []))
+    faults: dict[int, str] = {}
+    _, names = next(_csv_rows([head], delimiter, where, 1, faults), (1, []))
 
     def blocks() -> Iterator[Block]:
-        number, chunk = 2, b""
-        while find_spec("polars"):
-            chunk = file.read(CHUNK_BYTES) + file.readline(LONGEST_LINE)
-            columns = _split_plain(chunk, len(names), delimiter)
-            if not columns:
-                break
-            numbers = range(number, number + len(columns[0]))
-            yield Block(columns, numbers)
-            number = numbers.stop
+        number = 2
+        while columns := _split_plain(
+            chunk := file.read(CHUNK_BYTES) + file.readline(LONGEST_LINE), len(names), delimiter
+        ):
+            yield Block(columns, range(number, number + len(columns[0])))
+            number += len(columns[0])
         rest = chain(io.BytesIO(chunk), iter(partial(file.readline, LONGEST_LINE), b""))
-        yield from blocks_of(_csv_rows(rest, delimiter, where, number, len(names)))
+        yield from blocks_of(_csv_rows(rest, delimiter, where, number, faults, len(names)))
 
     read = (_with_points(names, block) for block in blocks()) if delimiter == ";" else blocks()
-    return Table(names, read, where, "line")
+    return Table(names, read, where, "line", faults)
 
 
 def _split_plain(chunk: bytes, width: int, delimiter: str) -> list[Column]:
-    """Return the columns of a chunk by polars; none at the end of the file, and where it has
-    quotes, blank rows, or rows of another width, which polars fills without a word."""
+    """Return the columns of a chunk by polars; none without it, at the end of the file, and where
+    it has quotes, blank rows, or rows of another width, which polars fills without a word."""
+    rows = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
+    is_plain = chunk.count(delimiter.encode()) == rows * (width - 1) and b'"' not in chunk
+    if not (chunk and is_plain and find_spec("polars")):
+        return []
     import polars
 
-    marks = chunk.count(delimiter.encode())
-    rows = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
-    if not chunk or b'"' in chunk or marks != rows * (width - 1):
-        return []
     with suppress(polars.exceptions.PolarsError):  # rows of more and of fewer fields; not UTF-8
         frame = polars.read_csv(
             chunk, has_header=False, infer_schema=False, quote_char=None, separator=delimiter
         )
-        has_gaps = all(column.null_count() for column in frame)
-        if frame.shape == (rows, width) and not has_gaps:
+        if frame.shape == (rows, width) and not all(column.null_count() for column in frame):
             return frame.get_columns()
     return []
 
 
 def _csv_rows(
-    lines: Iterable[bytes], delimiter: str, where: str, number: int, width: int = 0
+    lines: Iterable[bytes],
+    delimiter: str,
+    where: str,
+    number: int,
+    faults: dict[int, str],
+    width: int = 0,
 ) -> Rows:
-    """Yield the rows of CSV that are not blank, with their lines, by the csv module. Raises
-    UserError for a row of another width."""
+    """Yield the rows of CSV that are not blank, with their lines, by the csv module; a row of
+    another width is a fault, and its fields are empty. Raises UserError."""
     reader = csv.reader(map(bytes.decode, lines), delimiter=delimiter, strict=True)
     line = number
     try:
         for row in reader:
-            if width and len(row) not in (0, width):
-                fault = f"has {len(row)} fields; expected {width}, as in the headings"
-                raise UserError(fault, f"{where}, line {line}")
             if any(row):
+                if width and len(row) != width:
+                    faults[line] = f"has {len(row)} fields; expected {width}, as in the headings"
+                    row = [""] * width
                 yield line, row
             line = number + reader.line_num
     except csv.Error as error:
@@ -172,9 +176,7 @@ def _with_points(names: Sequence[str], block: Block) -> Block:
     for at, name in enumerate(names):
         if heading_name(name)[0]:
             cells = (cell or "" for cell in columns[at])
-            columns[at] = [
-                cell.replace(".", "").replace(",", ".") if "," in cell else cell for cell in cells
-            ]
+            columns[at] = [cell.translate(_POINTS) if "," in cell else cell for cell in cells]
     return Block(columns, block.rows)
 
 
@@ -190,16 +192,17 @@ def read_json(path: str, digits: bool = False) -> Table:
         (at, _json_row(text, f"{where}, line {at}", digits)) for at, text in lines if text.strip()
     )
     first = next(rows, (1, {}))
+    faults: dict[int, str] = {}
     names = [*first[1]]
 
     def cells() -> Rows:
         for at, row in chain([first], rows):
-            if unknown := row.keys() - first[1].keys():
-                fault = f"{quoted(min(unknown))} is not in the first row; expected its names"
-                raise UserError(fault, f"{where}, line {at}")
+            if unknown := row.keys() - names:
+                faults[at] = f"{quoted(min(unknown))} is not in the first row; expected its names"
+                row = {}
             yield at, [row.get(name) for name in names]
 
-    return Table(names, blocks_of(cells()), where, "line")
+    return Table(names, blocks_of(cells()), where, "line", faults)
 
 
 def _json_row(line: bytes, where: str, digits: bool) -> dict[str, Any]:
@@ -222,14 +225,14 @@ def write_csv(file: IO[bytes], blocks: Iterable[Columns]) -> None:
         if find_spec("polars"):
             from .polarsformats import frame_of
 
-            data = io.BytesIO()  # polars hides which error of the file it met
-            frame_of(columns).write_csv(data, include_header=not number)
-            file.write(data.getbuffer())
+            # not into the file: polars hides which error of the file it met
+            text = frame_of(columns).write_csv(include_header=not number)
         else:
-            text = io.StringIO(newline="")
-            writer = csv.writer(text, lineterminator="\n")
+            lines = io.StringIO(newline="")
+            writer = csv.writer(lines, lineterminator="\n")
             writer.writerows([[*columns], *_rows(columns)][bool(number) :])
-            file.write(text.getvalue().encode())
+            text = lines.getvalue()
+        file.write(text.encode())
 
 
 def write_json(file: IO[bytes], blocks: Iterable[Columns]) -> None:
@@ -242,8 +245,6 @@ def write_json(file: IO[bytes], blocks: Iterable[Columns]) -> None:
 
 def _rows(columns: Columns) -> Iterator[tuple[Any, ...]]:
     """Return the rows of columns, None for a number that is none."""
-    lists = []
-    for column in columns.values():
-        cells = column.tolist() if isinstance(column, np.ndarray) else column
-        lists.append([None if cell != cell else cell for cell in cells])
-    return zip(*lists, strict=True)
+    lists = (np.asarray(column, object).tolist() for column in columns.values())
+    cells = ([None if cell != cell else cell for cell in column] for column in lists)
+    return zip(*cells, strict=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from impact88.apple.applesoft.console import EndOfInput
@@ -493,6 +493,7 @@ STEPS = st.lists(
 
 @settings(max_examples=100)
 @given(STEPS)
+@example(["REM", " "])
 def test_what_can_be_typed_survives_save_and_load(words):
     machine = Applesoft()
     machine.type_line(f"10 A{''.join(words)}"[:239])

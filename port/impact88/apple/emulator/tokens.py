@@ -113,8 +113,8 @@ def split_number(text: str) -> tuple[int, str] | None:
 def detokenise(tokens: bytes) -> str:
     """Return a text that tokenises into ``tokens``.
 
-    There are blanks around keywords, except after REM and DATA, whose text is kept, and between a
-    colon and REM or DATA, so that the line is not mistaken for LIST's, which adds a blank there.
+    There are blanks around keywords, except after REM and DATA, whose text is kept, and before
+    them, so that the line is not mistaken for LIST's, which adds a blank there.
     PRINT is written as a question mark if its letters would form another word with the preceding
     ones: ``PO?``."""
     for print_word in ("PRINT", "?"):
@@ -125,10 +125,9 @@ def detokenise(tokens: bytes) -> str:
                 text += chr(byte)
                 continue
             word = print_word if byte == PRINT else _LISTED[byte - FIRST]
-            apart = text and not text.endswith((" ", "("))
-            if not keyword and text.endswith(":") and place < len(tokens) - 1:
-                apart = False
-            text += f" {word}" if apart else word
+            has_remark = not keyword and place < len(tokens) - 1
+            is_apart = text and not (has_remark or text.endswith((" ", "(")))
+            text += f" {word}" if is_apart else word
             if keyword and not word.endswith("("):
                 text += " "
         text = text.rstrip(" ") if keyword else text
