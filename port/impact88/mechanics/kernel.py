@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from .. import library
 from ..errors import UserError
 from ..names import PIVOT
+from ..status import Status
 from . import consequences, formulas
 from .plan import COMPILED, FORMULAS, OTHERS, PIVOTS, ROWS, Step, plan
 from .translate import digest
@@ -27,14 +28,7 @@ Array = NDArray[Any]
 STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the second-level cache
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
 PROCESSORS = os.cpu_count() or 1
-NOT_FINITE = 64.0
-# kinds of results in `kernel.c`
-FINITE = 0
-ANY_SIZE = 1
-BITS = 2  # STATUS
-RAW = 3  # as computed
-KINDS = {"STATUS": BITS, "COND": ANY_SIZE}  # of checked results; the others are finite
-NUMBERS = {name: number for number, name in enumerate(COMPILED)}  # of loops in the library
+LOOPS = [*COMPILED]  # in the order of the library
 _functions = {
     name: getattr(formulas if name in COMPILED else consequences, formula.tree.name)
     for name, formula in FORMULAS.items()
@@ -96,13 +90,11 @@ class Kernel:
             is_compiled = is_compiled and _gives(self.following).isdisjoint(formula.takes)
             (compiled if is_compiled else self.following).append((formula, guard))
         given = _gives(compiled)
-        inputs = _takes(compiled) - given
         needed = dict.fromkeys((*wanted, *_takes(self.following)))
         self.results = [name for name in needed if name in given]
-        self.fixed = [name for name in inputs if name not in varying]
-        self.changing = [name for name in inputs if name in varying]
-        self._kinds = [KINDS.get(name, FINITE) if is_checked else RAW for name in self.results]
-        self._bits = [row for row, kind in enumerate(self._kinds) if kind == BITS]
+        inputs = _takes(compiled) - given
+        self.fixed = [*inputs - varying]
+        self.changing = [*inputs & varying]
         changing = set(varying)
         once: list[Step] = []
         each: list[Step] = []
@@ -113,15 +105,11 @@ class Kernel:
                 each.append((formula, guard))
                 changing.update(formula.gives)
         self._steps = once + each
-        pairs = [
-            *((ROWS[name], 0) for name in self.fixed),
-            *((ROWS[name], 1) for name in self.changing),
-            *((NUMBERS[formula.name], guard) for formula, guard in self._steps),
-            *((ROWS[name], kind) for name, kind in zip(self.results, self._kinds, strict=True)),
-        ]
-        sizes = (len(inputs), len(once), len(compiled), len(self.results), ROWS["fit"])
-        self._plan = np.array([*sizes, *chain(*pairs)], np.int64)
-        (self._plan_address,) = addresses([self._plan])
+        self._is_checked = is_checked
+        rows = [ROWS[name] for name in (*self.fixed, *self.changing, *self.results)]
+        calls = [(LOOPS.index(formula.name), guard) for formula, guard in self._steps]
+        sizes = (len(self.fixed), len(inputs), len(once), len(calls), len(self.results), is_checked)
+        self._plan = np.array([*sizes, *rows, *chain(*calls)], np.int64)
 
     def compute(
         self,
@@ -151,27 +139,25 @@ class Kernel:
         UserError
             For arrays in ``out`` that cannot take the results.
         """
-        count = math.prod(shape)
-        places = addresses(columns)
+        arrays: list[Any]
         if out is None:
-            block = np.empty((len(self.results), count))
-            arrays = [*block]
-            starts = _row_addresses(block)
-            for row in self._bits:
-                arrays[row] = arrays[row].view(np.uint16)[:count]
+            arrays = [np.empty(shape, self._type(name)) for name in self.results]
         else:
-            arrays = [_output_array(out, name, shape) for name in self.results]
-            starts = addresses(arrays)
-            _check_overlap((places, columns), (starts, arrays))
+            arrays = [_checked_array(out.get(x), x, self._type(x), shape) for x in self.results]
+            _check_overlap(columns, arrays)
         if _compiled is None or library.is_switched_off():
             self._run_by_numpy(numbers, columns, [array.reshape(-1) for array in arrays])
         else:
-            table = np.array([*_row_addresses(numbers), *places, *starts], np.int64)
-            work = partial(_compiled.solve, self._plan_address, *addresses([table]))
-            run_in_threads(work, count, threads)
-        if out is None and len(shape) != 1:
-            arrays = [array.reshape(shape) if shape else array[0] for array in arrays]
+            table = np.array([*addresses([numbers]), *addresses([*columns, *arrays])], np.int64)
+            work = partial(_compiled.solve, *addresses([self._plan, table]))
+            run_in_threads(work, math.prod(shape), threads)
+        if out is None and not shape:
+            arrays = [array[()] for array in arrays]
         return dict(zip(self.results, arrays, strict=True))
+
+    def _type(self, name: str) -> type:
+        """Return the type of a result's numbers."""
+        return np.uint16 if self._is_checked and name == "STATUS" else np.float64
 
     def _run_by_numpy(
         self, numbers: Array, columns: Sequence[Array], rows: Sequence[Array]
@@ -182,8 +168,8 @@ class Kernel:
             values = dict(zip(self.fixed, numbers, strict=True))
             values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
             run_formulas(self._steps, values)
-            for row, name, kind in zip(rows, self.results, self._kinds, strict=True):
-                row[part] = output(values, name, kind)
+            for row, name in zip(rows, self.results, strict=True):
+                row[part] = checked(values, name) if self._is_checked else values[name]
 
 
 def _takes(steps: Sequence[Step]) -> set[str]:
@@ -196,10 +182,8 @@ def _gives(steps: Sequence[Step]) -> set[str]:
     return {x for formula, _ in steps for x in formula.gives}
 
 
-def _output_array(out: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Any:
-    """Return the array for a result. Raises UserError where it cannot take results of a shape."""
-    array: Any = out.get(name)
-    dtype: type = np.uint16 if name == "STATUS" else np.float64
+def _checked_array(array: Any, name: str, dtype: type, shape: tuple[int, ...]) -> Any:
+    """Return an array for results. Raises UserError where it cannot take those of a shape."""
     is_array = isinstance(array, np.ndarray) and array.flags.carray
     if not is_array or array.shape != shape or array.dtype != dtype:
         form = f"a contiguous array of {dtype.__name__} of shape {shape}"
@@ -207,12 +191,13 @@ def _output_array(out: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> 
     return array
 
 
-def _check_overlap(*groups: tuple[Sequence[int], Sequence[Array]]) -> None:
-    """Raise UserError where results share memory. ``groups``: columns and results, their addresses
-    and arrays."""
+def _check_overlap(columns: Sequence[Array], results: Sequence[Array]) -> None:
+    """Raise UserError where results share memory with columns or with each other."""
     spans = []
-    for is_result, (starts, arrays) in enumerate(groups):
-        spans += [(at, at + x.nbytes, is_result) for at, x in zip(starts, arrays, strict=True)]
+    for is_result, arrays in enumerate((columns, results)):
+        spans += [
+            (at, at + x.nbytes, is_result) for at, x in zip(addresses(arrays), arrays, strict=True)
+        ]
     for (_, end, is_result), (start, _, is_other) in pairwise(sorted(spans)):
         if start < end and is_result | is_other:  # columns may overlap each other
             raise UserError("out: a result shares memory with a column or another result")
@@ -232,20 +217,12 @@ def run_formulas(steps: Sequence[Step], values: dict[str, Any]) -> None:
             values.setdefault(quantity, array)
 
 
-def output(values: Mapping[str, Any], name: str, kind: int) -> Any:
+def checked(values: Mapping[str, Any], name: str) -> Any:
     """Return a result as the library writes it."""
     x = values[name]
-    if kind == RAW:
-        return x
-    largest = np.inf if kind == ANY_SIZE else formulas.LARGEST
+    largest = np.inf if name == "COND" else formulas.LARGEST
     is_usable = (values["fit"] == 1.0) & (np.abs(x) <= largest)
-    return np.where(is_usable, x + 0.0, NOT_FINITE if kind == BITS else np.nan)
-
-
-def _row_addresses(block: Array) -> Sequence[int]:
-    """Return the addresses of an array's rows."""
-    (first,) = addresses([block])
-    return range(first, first + block.nbytes, block.strides[0] or 8)
+    return np.where(is_usable, x + 0.0, Status.NOT_FINITE if name == "STATUS" else np.nan)
 
 
 def addresses(arrays: Sequence[Any]) -> list[int]:

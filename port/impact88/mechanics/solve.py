@@ -147,11 +147,11 @@ def evaluate(
     0.932
     """
     names = tuple(split_names(wanted))
+    check_names(names, QUANTITIES, "quantity of an impact")
     values = {x: _as_doubles(x, value) for x, value in known.items() if x in QUANTITIES}
     _complete_points(values)
     shape, inputs, varying = _flatten(values)
     kernel = _kernel(names, frozenset(values), varying, False)
-    check_names(kernel.missing, QUANTITIES, "quantity of an impact")
     values = {
         x: np.float64(value) if type(value) is float else value for x, value in values.items()
     }

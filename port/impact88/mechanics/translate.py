@@ -46,38 +46,35 @@ def function_text(formula: Formula) -> str:
 
 def loop_text(formula: Formula) -> str:
     """Return the loop of a function over a strip, whose quantities are columns and rows."""
-    places = {n: f"in[{k}][i]" if n in COLUMNS else f"row[{k}][i]" for n, k in ROWS.items()}
-    operands = [places[name] for name in formula.takes]
-    operands += [f"&{places[name]}" for name in formula.gives]
+    operands = [f"in[AT_{n}][i]" if n in COLUMNS else f"row[AT_{n}][i]" for n in formula.takes]
+    operands += [f"&row[AT_{name}][i]" for name in formula.gives]
     call = f"EACH {formula.tree.name}({', '.join(operands)});"
     return f"CLONES void each_{formula.name}(const double *const *in, ROW *row)\n{{\n    {call}\n}}"
 
 
 def header() -> str:
     """Return the text of ``formulas.h``: constants, functions, loops and the table of loops."""
-    numbers = {"PIVOT": PIVOT, "COLUMNS": len(COLUMNS), "ROWS": len(ROWS), "AT_MU": ROWS["MU"]}
     constants = [line for line in SOURCE.body if isinstance(line, ast.Assign)]
+    rows = ", ".join(f"AT_{name}" for name in ROWS)
     bits = " ".join(f"double {bit.name};" for bit in Status)
     values = ", ".join(f"{bit:d}" for bit in Status)
     table = ", ".join(f"each_{name}" for name in COMPILED)
     parts = [
-        f'#define FORMULAS "{digest()}"',
-        *(f"#define {name} ({number})" for name, number in numbers.items()),
+        f"#define PIVOT ({PIVOT})",
+        f"enum {{ {rows}, ROWS, COLUMNS = {len(COLUMNS)} }};",
         *(f"#define {ast.unparse(x.targets[0])} ({ast.unparse(x.value)})" for x in constants),
         f"static const struct {{{bits}}} Status = {{{values}}};",
         *map(function_text, FUNCTIONS.values()),
         *map(loop_text, COMPILED.values()),
         f"static void (*const loops[])(const double *const *, ROW *) = {{{table}}};",
     ]
-    return "/* printed by translate.py */\n\n" + "\n\n".join(parts) + "\n"
+    return "\n\n".join(parts) + "\n"
 
 
 def digest() -> str:
-    """Return a digest of the functions: a library that has it was built from these."""
-    flow = [(formula.takes, formula.gives) for formula in COMPILED.values()]
-    text = ast.unparse(SOURCE) + str([PIVOT, *Status, *COLUMNS, *flow])
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    """Return a digest of the header: a library that has it was built from these formulas."""
+    return hashlib.sha256(header().encode()).hexdigest()[:16]
 
 
 if __name__ == "__main__":
-    print(header(), end="")
+    print(f'/* printed by translate.py */\n\n#define FORMULAS "{digest()}"\n\n{header()}', end="")
