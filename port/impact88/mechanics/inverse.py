@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import UserError
-from ..names import PIVOT
+from ..names import PIVOT, SCENE
 from . import equations
 from .consequences import typed_friction
 from .equations import LAWS, PAIRS, dot
@@ -88,9 +88,8 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
         [-s, c, at, s, -c, bt],
         [0.0, 0.0, 1.0, 0.0, 0.0, -1.0],
     ]
-    inverse_masses = [ma, ma, ia, mb, mb, ib]
     is_pivot = np.equal(values.get("MUP", 0.0), PIVOT)
-    found, given = equations.impact(values, is_pivot, relative, inverse_masses)
+    found, given = equations.impact(values, is_pivot, relative, [ma, ma, ia, mb, mb, ib])
     open_laws = [name for name, _ in LAWS if name not in values]
     values |= found
     early, late = (
@@ -107,6 +106,6 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
         values[name] = dividend / divisor
         volume = volume - np.log(np.abs(divisor))
     (values["MU"],) = typed_friction(values["MUP"], early[1])
-    _, forward = equations.impact(values, is_pivot, relative, inverse_masses)
-    volume = volume + np.log(np.abs(forward))
+    forward, _ = evaluate({name: values[name] for name in SCENE if name in values}, "D")
+    volume = volume + np.log(np.abs(forward["D"] * (ia + ib)))
     return Completed(values, np.broadcast_to(volume, np.shape(found["PN"])))

@@ -106,6 +106,7 @@ class Kernel:
                 changing.update(formula.gives)
         self._steps = once + each
         self._is_checked = is_checked
+        self._bits = [k for k, name in enumerate(self.results) if is_checked and name == "STATUS"]
         rows = [ROWS[name] for name in (*self.fixed, *self.changing, *self.results)]
         calls = [(LOOPS.index(formula.name), guard) for formula, guard in self._steps]
         sizes = (len(self.fixed), len(inputs), len(once), len(calls), len(self.results), is_checked)
@@ -139,25 +140,28 @@ class Kernel:
         UserError
             For arrays in ``out`` that cannot take the results.
         """
-        arrays: list[Any]
-        if out is None:
-            arrays = [np.empty(shape, self._type(name)) for name in self.results]
+        count = math.prod(shape)
+        places = addresses(columns)
+        if out is None:  # one block: its rows do not share lines of the cache
+            block = np.empty((len(self.results), count))
+            arrays = [*block]
+            for row in self._bits:
+                arrays[row] = arrays[row].view(np.uint16)[:count]
+            (first,) = addresses([block])
+            starts: Sequence[int] = range(first, first + block.nbytes, block.strides[0] or 8)
         else:
-            arrays = [_checked_array(out.get(x), x, self._type(x), shape) for x in self.results]
-            _check_overlap(columns, arrays)
+            arrays = [_output_array(out.get(name), name, shape) for name in self.results]
+            starts = addresses(arrays)
+            _check_overlap((places, columns), (starts, arrays))
         if _compiled is None or library.is_switched_off():
             self._run_by_numpy(numbers, columns, [array.reshape(-1) for array in arrays])
         else:
-            table = np.array([*addresses([numbers]), *addresses([*columns, *arrays])], np.int64)
+            table = np.array([*addresses([numbers]), *places, *starts], np.int64)
             work = partial(_compiled.solve, *addresses([self._plan, table]))
-            run_in_threads(work, math.prod(shape), threads)
-        if out is None and not shape:
-            arrays = [array[()] for array in arrays]
+            run_in_threads(work, count, threads)
+        if out is None and len(shape) != 1:
+            arrays = [array.reshape(shape) if shape else array[0] for array in arrays]
         return dict(zip(self.results, arrays, strict=True))
-
-    def _type(self, name: str) -> type:
-        """Return the type of a result's numbers."""
-        return np.uint16 if self._is_checked and name == "STATUS" else np.float64
 
     def _run_by_numpy(
         self, numbers: Array, columns: Sequence[Array], rows: Sequence[Array]
@@ -182,8 +186,9 @@ def _gives(steps: Sequence[Step]) -> set[str]:
     return {x for formula, _ in steps for x in formula.gives}
 
 
-def _checked_array(array: Any, name: str, dtype: type, shape: tuple[int, ...]) -> Any:
-    """Return an array for results. Raises UserError where it cannot take those of a shape."""
+def _output_array(array: Any, name: str, shape: tuple[int, ...]) -> Any:
+    """Return an array for a result. Raises UserError where it cannot take results of a shape."""
+    dtype: type = np.uint16 if name == "STATUS" else np.float64
     is_array = isinstance(array, np.ndarray) and array.flags.carray
     if not is_array or array.shape != shape or array.dtype != dtype:
         form = f"a contiguous array of {dtype.__name__} of shape {shape}"
@@ -191,13 +196,12 @@ def _checked_array(array: Any, name: str, dtype: type, shape: tuple[int, ...]) -
     return array
 
 
-def _check_overlap(columns: Sequence[Array], results: Sequence[Array]) -> None:
-    """Raise UserError where results share memory with columns or with each other."""
+def _check_overlap(*groups: tuple[Sequence[int], Sequence[Array]]) -> None:
+    """Raise UserError where results share memory. ``groups``: columns and results, their addresses
+    and arrays."""
     spans = []
-    for is_result, arrays in enumerate((columns, results)):
-        spans += [
-            (at, at + x.nbytes, is_result) for at, x in zip(addresses(arrays), arrays, strict=True)
-        ]
+    for is_result, (starts, arrays) in enumerate(groups):
+        spans += [(at, at + x.nbytes, is_result) for at, x in zip(starts, arrays, strict=True)]
     for (_, end, is_result), (start, _, is_other) in pairwise(sorted(spans)):
         if start < end and is_result | is_other:  # columns may overlap each other
             raise UserError("out: a result shares memory with a column or another result")
