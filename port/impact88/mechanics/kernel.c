@@ -50,16 +50,15 @@ const char *instructions(void)
     return "baseline";
 }
 
-/* ``plan``: the numbers of inputs that are one number for all scenes, of inputs, of functions that
-   run once, of functions, of results, and whether results are checked; the rows of inputs and of
-   results; then function and guard (1: where pivots are, 2: where others are) in order. ``places``:
-   the addresses of the numbers, of the other inputs, and of the results. */
+/* ``plan``: the numbers of inputs that are one number for all scenes, of inputs, of functions, of
+   results, and whether results are checked; the rows of inputs and of results; then function, guard
+   (1: where pivots are, 2: where others are) and whether it varies with the scene, in order.
+   ``places``: the addresses of the numbers, of the other inputs, and of the results. */
 void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
 {
     ROW row[ROWS]; /* those of columns: of numbers, and of the last strip's ends */
-    const int64_t fixed = plan[0], inputs = plan[1], once = plan[2], steps = plan[3];
-    const int64_t results = plan[4], checked = plan[5];
-    const int64_t *input = plan + 6, *result = input + inputs, *step = result + results;
+    const int64_t fixed = plan[0], inputs = plan[1], steps = plan[2], results = plan[3];
+    const int64_t checked = plan[4], *input = plan + 5, *result = input + inputs;
     const double *in[COLUMNS] = {0};
     for (int64_t at = begin; at < end; at += STRIP) {
         int64_t count = end - at < STRIP ? end - at : STRIP, pivots = 0;
@@ -74,10 +73,11 @@ void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
             for (int64_t i = varies ? count : 1; i < STRIP; i++) copy[i] = copy[0];
         }
         if (in[AT_MU]) EACH pivots += in[AT_MU][i] == PIVOT;
-        for (int64_t k = at == begin ? 0 : once; k < steps; k++) {
-            int64_t guard = step[2 * k + 1];
-            if (guard == 1 ? !pivots : guard == 2 && pivots == STRIP) continue;
-            loops[step[2 * k]](in, row);
+        const int64_t *step = result + results;
+        for (int64_t k = 0; k < steps; k++, step += 3) {
+            int64_t guard = step[1], varies = step[2];
+            if (varies && (guard == 1 ? !pivots : guard == 2 && pivots == STRIP)) continue;
+            if (varies || at == begin) loops[step[0]](in, row); /* others: a later strip has pivots */
         }
         for (int64_t k = 0; k < results; k++) {
             int64_t n = result[k], bits = checked && n == AT_STATUS, size = bits ? 2 : 8;

@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import chain, pairwise
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -95,22 +95,19 @@ class Kernel:
         inputs = _takes(compiled) - given
         self.fixed = [*inputs - varying]
         self.changing = [*inputs & varying]
+        self._steps = compiled
         changing = set(varying)
-        once: list[Step] = []
-        each: list[Step] = []
+        calls: list[int] = []
         for formula, guard in compiled:
-            if changing.isdisjoint(formula.takes):
-                once.append((formula, 0))  # a later strip may have the pivots that the first lacks
-            else:
-                each.append((formula, guard))
+            varies = not changing.isdisjoint(formula.takes)
+            if varies:
                 changing.update(formula.gives)
-        self._steps = once + each
+            calls += (LOOPS.index(formula.name), guard, varies)
         self._is_checked = is_checked
         self._bits = [k for k, name in enumerate(self.results) if is_checked and name == "STATUS"]
         rows = [ROWS[name] for name in (*self.fixed, *self.changing, *self.results)]
-        calls = [(LOOPS.index(formula.name), guard) for formula, guard in self._steps]
-        sizes = (len(self.fixed), len(inputs), len(once), len(calls), len(self.results), is_checked)
-        self._plan = np.array([*sizes, *rows, *chain(*calls)], np.int64)
+        sizes = (len(self.fixed), len(inputs), len(compiled), len(self.results), is_checked)
+        self._plan = np.array([*sizes, *rows, *calls], np.int64)
 
     def compute(
         self,
