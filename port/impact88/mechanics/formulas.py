@@ -253,20 +253,14 @@ def pivot_impulse(
     return D_p, Nn, Nt, h_p
 
 
-def impulse(MU, MUP, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
-    """Return the impulse, h and the determinant."""
+def impulse(M, MU, MUP, em, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
+    """Return the impulse, the moment impulse and the determinant."""
     pivot = MU == PIVOT
     D = where(pivot, D_p, D_s)
     PN = where(pivot, Nn, Pn_s) / D
     PT = where(pivot, Nt / D, MUP * PN)
-    h = where(pivot, h_p, h_s) / D
-    return PN, PT, h, D
-
-
-def moment_impulse(M, em, h):
-    """Return the moment impulse."""
-    PM = where(M == 4.0, 0.0, (1.0 - em) * h)
-    return (PM,)
+    PM = where(M == 4.0, 0.0, (1.0 - em) * (where(pivot, h_p, h_s) / D))
+    return PN, PT, PM, D
 
 
 # -- after the impact
@@ -464,10 +458,7 @@ def condition_number(MU, MUP, em, z, D, R, J, Ired, sn, st, an, at, bn, bt, ia, 
     """Return the determinant with absolute values in every sum, over itself."""
     size = fabs(MUP)
     z_ = fabs(z)
-    sn_ = fabs(an) + fabs(bn)
-    st_ = fabs(at) + fabs(bt)
-    kn_ = fabs(an) * ia + fabs(bn) * ib
-    kt_ = fabs(at) * ia + fabs(bt) * ib
+    sn_, st_, kn_, kt_ = combined_arms(fabs(an), fabs(at), fabs(bn), fabs(bt), ia, -ib)
     of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_)) + fabs(em) * (
         Ired * kn_ * (kn_ + size * kt_)
     )

@@ -7,7 +7,6 @@ result, add its line where `_results` says so.
 """
 
 from collections.abc import Mapping
-from fractions import Fraction
 from math import inf
 from typing import Any
 
@@ -24,7 +23,7 @@ UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM", "WA", "WB")  # by point mass
 
 mpmath: Any = library("mpmath", "oracle", "the reference in 50 digits")
 intervals = mpmath.ctx_iv.MPIntervalContext()
-Number = Any  # a Fraction, float, mpmath.mpf or interval; the last two have no usable type
+Number = Any  # mpmath.mpf, or an interval; neither has a usable type
 
 
 def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
@@ -71,26 +70,21 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
     numbers = {name: _number(x) for name, x in scene.items()}
     powers = [int(mpmath.log10(abs(x))) for x in numbers.values() if 0 < abs(x) < inf]
     intervals.dps = DIGITS + GUARD + 3 * (max(powers, default=0) - min(powers, default=0))
-    enclosures = _results({name: _enclosed(x) for name, x in numbers.items()})
+    enclosures = _results(
+        {n: intervals.mpf(x if isinstance(x, float) else str(x)) for n, x in numbers.items()}
+    )
     with mpmath.workdps(DIGITS):  # the middle of an interval that holds everything is NaN
         values = {name: mpmath.mpf(x.mid) * (0 not in x) for name, x in enclosures.items()}
         values |= {n: mpmath.sqrt(values[n]) for n in values if n in ("EESA", "EESB")}
     return {name: x for name, x in values.items() if mpmath.isfinite(x)}
 
 
-def _number(value: str | float) -> Number:
+def _number(value: str | float) -> Any:
     """Return an exact number. Raises UserError for a text that is none."""
     try:
         return exact(value) if isinstance(value, str) else value
     except ValueError as error:
         raise UserError(f"{error}; expected a number") from None
-
-
-def _enclosed(x: Number) -> Number:
-    """Return the interval of a number."""
-    if isinstance(x, Fraction):
-        return intervals.mpf(x.numerator) / x.denominator
-    return intervals.mpf(x)
 
 
 def _results(scene: dict[str, Number]) -> dict[str, Number]:

@@ -18,19 +18,20 @@ def statements(formula: Formula) -> list[str]:
     """Return a function's statements in C."""
     lines: list[str] = []
     for line in formula.tree.body:
+        text = ast.unparse(line)
+        target, _, value = text.partition(" = ")
+        names = target.strip("()")
         match line:
-            case ast.Assign(targets=[ast.Name()], value=value):
-                operator = getattr(value, "op", value)
+            case ast.Assign(targets=[ast.Tuple()]):  # by another function, of the places of results
+                lines += [f"double {names};", f"{value[:-1]}, &{names.replace(', ', ', &')});"]
+            case ast.Assign(value=whole):
+                operator = getattr(whole, "op", whole)
                 is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
-                lines.append(f"{'int64_t' if is_condition else 'double'} {ast.unparse(line)};")
-            case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Call() as call):
-                places = [f"&{ast.unparse(name)}" for name in names]
-                lines.append(f"double {', '.join(map(ast.unparse, names))};")
-                lines.append(f"{ast.unparse(call).removesuffix(')')}, {', '.join(places)});")
-            case ast.Return(value=ast.Tuple(elts=names)):
-                lines += [f"*to_{name} = {name};" for name in map(ast.unparse, names)]
+                lines.append(f"{'int64_t' if is_condition else 'double'} {text};")
+            case ast.Return() if formula.gives:
+                lines += [f"*to_{name} = {name};" for name in formula.gives]
             case ast.Return():
-                lines.append(f"{ast.unparse(line)};")
+                lines.append(f"{text};")
     return lines
 
 
