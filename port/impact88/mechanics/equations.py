@@ -56,15 +56,13 @@ def impact(
         (ends, 0.0, (-mup * (1.0 - ends), 1.0 - ends, 0.0)),
         (1.0 - em, 0.0, (0.0, 0.0, -em * full[2][2])),
     )
-    rows, right = [], []
-    for k, ((name, impulse), (after, before, own)) in enumerate(zip(LAWS, sums, strict=True)):
-        if name in known:
+    rows: list[list[Any]] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    right = [known.get(impulse) for _, impulse in LAWS]
+    for k, (after, before, own) in enumerate(sums):
+        if LAWS[k][0] in known:
             terms = zip(full[k], delayed[k], own, strict=True)
-            rows.append([after * x - (after + before) * y + z for x, y, z in terms])
-            right.append(-(after + before) * dot(relative[k], given))
-        else:
-            rows.append([0.0] * k + [1.0] + [0.0] * (2 - k))
-            right.append(known[impulse])
+            rows[k] = [after * x - (after + before) * y + z for x, y, z in terms]
+            right[k] = -(after + before) * dot(relative[k], given)
     crosses = [_cross(rows[k - 2], rows[k - 1]) for k in range(3)]
     determinant = dot(rows[0], crosses[0])
     impulses = [dot(right, column) / determinant for column in zip(*crosses, strict=True)]

@@ -268,8 +268,8 @@ def impulse(M, MU, MUP, em, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
 
 def velocity_changes(PN, PT, s, c, ma, mb):
     """Return the velocity changes along x and y."""
-    Px = c * PN - s * PT
-    Py = s * PN + c * PT
+    Px = cross(c, s, PT, PN)
+    Py = dot(c, s, PT, PN)
     ax = ma * Px
     ay = ma * Py
     bx = -(mb * Px)
@@ -409,8 +409,8 @@ def finite_inertia(M, MA, IA):
 
 def energy(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
     """Return the kinetic energy."""
-    turning = ja * wa * wa + jb * wb * wb
-    KI = 0.5 * (fa * dot(UX, UY, UX, UY) + fb * dot(VX, VY, VX, VY) + turning)
+    moving = dot(fa, fb, dot(UX, UY, UX, UY), dot(VX, VY, VX, VY))
+    KI = 0.5 * (moving + dot(ja * wa, jb * wb, wa, wb))
     return (KI,)
 
 
@@ -511,8 +511,8 @@ def friction_bits(MU, MUP, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, N
     backward = along < -FRICTION_TOLERANCE
     no_sliding = (pushing > 0.0) & (critical <= FRICTION_TOLERANCE * pushing)
     beyond = (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
-    turned = (an * at * ia + bn * bt * ib) * PN + kt * PM
-    back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
+    turned = dot(an * at, bn * bt, ia, ib) * PN + kt * PM
+    back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + dot(at * at, bt * bt, ia, ib)))
     size = fabs(turned)
     excess = fabs(gt) + fabs(gt) - size
     gap = excess - back

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import UserError
 from ..names import PIVOT, SCENE
 from . import equations
-from .consequences import typed_friction
-from .equations import LAWS, PAIRS, dot
+from .equations import LAWS, PAIRS
 from .formulas import NO_MOMENT
 from .solve import BODIES, POINT, evaluate
 
@@ -74,7 +73,7 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     >>> print(complete(known).values["UX"].round(9), scene["UX"])
     -29.04 -29.04
     """
-    values: dict[str, Any] = {n: np.asarray(value, np.float64) for n, value in known.items()}
+    values: dict[str, Any] = {n: np.asarray(x, np.float64) for n, x in known.items() if n != "MU"}
     if (values.setdefault("M", np.array(BODIES)) == POINT).all():
         values["EM"] = np.array(NO_MOMENT)
     geometry, lacking = evaluate({n: values[n] for n in COLUMNS if n in values}, GEOMETRY)
@@ -92,20 +91,12 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     found, given = equations.impact(values, is_pivot, relative, [ma, ma, ia, mb, mb, ib])
     open_laws = [name for name, _ in LAWS if name not in values]
     values |= found
-    early, late = (
-        [dot(row, [values[pair[k]] for pair in PAIRS]) for row in relative] for k in (0, 1)
-    )
-    quotients = {
-        "E": (-late[0], early[0]),
-        "MUP": (values["PT"], values["PN"]),
-        "EM": (late[2], late[2] + values["PM"] * (ia + ib)),
-    }
+    *more, gn, waf, wbf = evaluate(values, (*open_laws, "MU", "gn", "waf", "wbf"))[0].values()
+    values |= zip((*open_laws, "MU"), more, strict=True)
+    divisors = {"E": gn, "MUP": values["PN"], "EM": waf - wbf + values["PM"] * (ia + ib)}
     volume = -np.log(np.abs(given))
     for name in open_laws:
-        dividend, divisor = quotients[name]
-        values[name] = dividend / divisor
-        volume = volume - np.log(np.abs(divisor))
-    (values["MU"],) = typed_friction(values["MUP"], early[1])
+        volume = volume - np.log(np.abs(divisors[name]))
     forward, _ = evaluate({name: values[name] for name in SCENE if name in values}, "D")
     volume = volume + np.log(np.abs(forward["D"] * (ia + ib)))
     return Completed(values, np.broadcast_to(volume, np.shape(found["PN"])))

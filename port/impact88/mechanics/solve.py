@@ -96,7 +96,7 @@ def solve(
         results = tuple(RESULTS if out is None else out)
     if threads is not None and not (isinstance(threads, int | np.integer) and threads > 0):
         raise UserError(f"threads is {quoted(threads)}; expected a whole number above 0, or None")
-    wanted = _result_names(results if isinstance(results, str) else tuple(results))
+    wanted = _result_names(tuple(split_names(results)))
     shape, inputs, varying = _flatten(_read_columns(columns, wanted))
     kernel = _kernel(wanted, _COLUMNS, varying, True)
     return kernel.compute(*_select(inputs, kernel), shape, out, threads)
@@ -249,7 +249,7 @@ class Prepared:
         if varying:
             raise UserError(f"{' '.join(varying)}: {shape} numbers; expected one that stays")
         self._kernel = _kernel(self.results, _COLUMNS, frozenset(self.names), True)
-        self._numbers = np.array([self._scene[name] for name in self._kernel.fixed], np.float64)
+        self._numbers, _ = _select(self._scene, self._kernel)
         self._rows = [self.names.index(name) for name in self._kernel.changing]
 
     def __call__(self, values: ArrayLike, *surplus: object) -> dict[str, Any]:
@@ -298,9 +298,9 @@ def _select(inputs: Mapping[str, Any], kernel: Kernel) -> tuple[Array, list[Arra
 
 
 @lru_cache(maxsize=512)
-def _result_names(results: str | Names) -> Names:
+def _result_names(results: Names) -> Names:
     """Return result names, each once. Raises UserError."""
-    wanted = tuple(dict.fromkeys(split_names(results)))
+    wanted = tuple(dict.fromkeys(results))
     check_names(wanted, RESULTS, "result")
     if not wanted:
         raise UserError(f"no result is asked for; expected some of {' '.join(RESULTS)}")
