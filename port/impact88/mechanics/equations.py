@@ -56,7 +56,7 @@ def impact(
         (ends, 0.0, (-mup * (1.0 - ends), 1.0 - ends, 0.0)),
         (1.0 - em, 0.0, (0.0, 0.0, -em * full[2][2])),
     )
-    rows: list[list[Any]] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     right = [known.get(impulse) for _, impulse in LAWS]
     for k, (after, before, own) in enumerate(sums):
         if LAWS[k][0] in known:

@@ -83,30 +83,35 @@ class Kernel:
         is_checked: bool,
     ) -> None:
         steps, _, self.missing = plan((*wanted, "fit") if is_checked else wanted, known)
-        compiled: list[Step] = []
+        self._steps: list[Step] = []
         self.following: list[Step] = []
-        for formula, guard in steps:
-            is_compiled = formula.name in COMPILED and known.isdisjoint(formula.gives)
-            is_compiled = is_compiled and _gives(self.following).isdisjoint(formula.takes)
-            (compiled if is_compiled else self.following).append((formula, guard))
-        given = _gives(compiled)
-        needed = dict.fromkeys((*wanted, *_takes(self.following)))
-        self.results = [name for name in needed if name in given]
-        inputs = _takes(compiled) - given
-        self.fixed = [*inputs - varying]
-        self.changing = [*inputs & varying]
-        self._steps = compiled
+        inputs: set[str] = set()
+        given: set[str] = set()
+        left: set[str] = set()  # what numpy gives afterwards
         changing = set(varying)
         calls: list[int] = []
-        for formula, guard in compiled:
-            varies = not changing.isdisjoint(formula.takes)
-            if varies:
-                changing.update(formula.gives)
-            calls += (LOOPS.index(formula.name), guard, varies)
+        for formula, guard in steps:
+            takes, gives = formula.takes, formula.gives
+            if formula.name in COMPILED and known.isdisjoint(gives) and left.isdisjoint(takes):
+                varies = not changing.isdisjoint(takes)
+                if varies:
+                    changing.update(gives)
+                calls += (LOOPS.index(formula.name), guard, varies)
+                self._steps.append((formula, guard))
+                inputs.update(takes)
+                given.update(gives)
+            else:
+                self.following.append((formula, guard))
+                wanted += takes
+                left.update(gives)
+        inputs -= given
+        self.fixed = [*inputs - varying]
+        self.changing = [*inputs & varying]
+        self.results = [name for name in dict.fromkeys(wanted) if name in given]
         self._is_checked = is_checked
         self._bits = [k for k, name in enumerate(self.results) if is_checked and name == "STATUS"]
         rows = [ROWS[name] for name in (*self.fixed, *self.changing, *self.results)]
-        sizes = (len(self.fixed), len(inputs), len(compiled), len(self.results), is_checked)
+        sizes = (len(self.fixed), len(inputs), len(self._steps), len(self.results), is_checked)
         self._plan = np.array([*sizes, *rows, *calls], np.int64)
 
     def compute(
@@ -171,16 +176,6 @@ class Kernel:
             run_formulas(self._steps, values)
             for row, name in zip(rows, self.results, strict=True):
                 row[part] = checked(values, name) if self._is_checked else values[name]
-
-
-def _takes(steps: Sequence[Step]) -> set[str]:
-    """Return the quantities that formulas take."""
-    return {x for formula, _ in steps for x in formula.takes}
-
-
-def _gives(steps: Sequence[Step]) -> set[str]:
-    """Return the quantities that formulas give."""
-    return {x for formula, _ in steps for x in formula.gives}
 
 
 def _output_array(array: Any, name: str, shape: tuple[int, ...]) -> Any:

@@ -172,7 +172,7 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     """
     sources = _sources(known)
     missing = {x: _lacking(x, known) for x in wanted if x not in known and x not in sources}
-    quantities = {x for x in wanted if x in sources}
+    quantities = set(wanted)
     everywhere = set(wanted)  # quantities that all scenes need
     inputs = {*known.intersection(wanted)}
     steps: list[Step] = []

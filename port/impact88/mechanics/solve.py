@@ -161,10 +161,10 @@ def evaluate(
         values |= kernel.compute(*_select(inputs, kernel), shape)
     if kernel.following:
         run_formulas(kernel.following, values)
-    results = {name: values[name] for name in names if name not in kernel.missing}
     results = {
-        name: array if array.shape == shape else np.broadcast_to(array, shape)
-        for name, array in results.items()
+        name: x if (x := values[name]).shape == shape else np.broadcast_to(x, shape)
+        for name in names
+        if name not in kernel.missing
     }
     return results, kernel.missing
 
