@@ -236,6 +236,8 @@ def test_values_of_other_types():
         ({"MU": np.ones(3), "E": np.ones(4)}, {}, r"do not broadcast together: E \(4,\), MU"),
         ({}, {"results": "VX"}, "'VX' is not a result"),
         ({}, {"results": ""}, "no result is asked for"),
+        ({}, {"threads": "x"}, "threads is 'x'; expected a whole number above 0"),
+        ({}, {"threads": 0}, "threads is 0; expected a whole number above 0"),
         (
             {"MU": np.ones(3)},
             {"out": {"VAX": np.ones(2)}},

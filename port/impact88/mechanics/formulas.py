@@ -61,6 +61,19 @@ FRICTION_TOLERANCE = 1e-9  # of P_t/P_n: above rounding, below the last digit an
 SIDE_TOLERANCE = 1e-9  # of a center beyond the contact plane, as a fraction of its distance
 
 
+# -- vectors
+
+
+def dot(x, y, u, v):
+    """Return the inner product of (x, y) and (u, v)."""
+    return x * u + y * v
+
+
+def cross(x, y, u, v):
+    """Return the cross product of (x, y) and (u, v)."""
+    return x * v - y * u
+
+
 def sine_and_cosine(degrees):
     """Return sine and cosine of an angle in degrees.
 
@@ -88,22 +101,9 @@ def sine_and_cosine(degrees):
     ))  # fmt: skip
     sin_k = k * (2.0 - fabs(k))
     cos_k = 1.0 - fabs(k)
-    sine = sin_k * cos_r + cos_k * sin_r
-    cosine = cos_k * cos_r - sin_k * sin_r
+    sine = dot(sin_k, cos_k, cos_r, sin_r)
+    cosine = cross(cos_k, sin_k, sin_r, cos_r)
     return sine, cosine
-
-
-# -- vectors
-
-
-def dot(x, y, u, v):
-    """Return the inner product of (x, y) and (u, v)."""
-    return x * u + y * v
-
-
-def cross(x, y, u, v):
-    """Return the cross product of (x, y) and (u, v)."""
-    return x * v - y * u
 
 
 # -- the scene

@@ -41,7 +41,7 @@ def _load() -> Any:
     part = library.loaded("mechanics_formulas", digest())
     if part is not None:
         number, pointer = ctypes.c_int64, ctypes.c_void_p
-        part.solve.argtypes, part.solve.restype = [pointer, pointer, number, number], None
+        part.solve.argtypes = [pointer, pointer, number, number]
     return part
 
 
@@ -175,7 +175,7 @@ class Kernel:
             values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
             run_formulas(self._steps, values)
             for row, name in zip(rows, self.results, strict=True):
-                row[part] = checked(values, name) if self._is_checked else values[name]
+                row[part] = finish(values, name) if self._is_checked else values[name]
 
 
 def _output_array(array: Any, name: str, shape: tuple[int, ...]) -> Any:
@@ -213,7 +213,7 @@ def run_formulas(steps: Sequence[Step], values: dict[str, Any]) -> None:
             values.setdefault(quantity, array)
 
 
-def checked(values: Mapping[str, Any], name: str) -> Any:
+def finish(values: Mapping[str, Any], name: str) -> Any:
     """Return a result as the library writes it."""
     x = values[name]
     largest = np.inf if name == "COND" else formulas.LARGEST

@@ -171,7 +171,11 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     {'KI': ('IA', 'IB')}
     """
     sources = _sources(known)
-    missing = {x: _lacking(x, known) for x in wanted if x not in known and x not in sources}
+    missing = {
+        x: tuple(n for n in plan((x,), known.union(COLUMNS)).inputs if n not in known)
+        for x in wanted
+        if x not in known and x not in sources
+    }
     quantities = set(wanted)
     everywhere = set(wanted)  # quantities that all scenes need
     inputs = {*known.intersection(wanted)}
@@ -187,12 +191,6 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
             inputs |= known.intersection(formula.takes)
             quantities.update(formula.takes)
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
-
-
-def _lacking(quantity: str, known: frozenset[str]) -> tuple[str, ...]:
-    """Return the columns that a quantity needs beside what is known."""
-    steps = plan((quantity,), known.union(COLUMNS))
-    return tuple(name for name in steps.inputs if name not in known)
 
 
 def _sources(known: frozenset[str]) -> dict[str, Formula]:

@@ -116,8 +116,8 @@ def _results(scene: dict[str, Number]) -> dict[str, Number]:
     mu = -g["MU"] if gt.a > 0 and not is_pivot else g["MU"]
     known = {**g, "MUP": mu}
     no_slip, _ = equations.impact(known, True, relative, inverse)
-    f, determinant = equations.impact(known, is_pivot, relative, inverse)
-    if 0 in determinant:
+    f, _ = equations.impact(known, is_pivot, relative, inverse)
+    if not mpmath.isfinite(f["PT"].mid):  # the determinant's interval holds 0
         return {}
     after = [f[name] for name in FINAL_STATE]
     sums = [u + v for u, v in zip(before, after, strict=True)]

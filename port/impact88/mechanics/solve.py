@@ -272,12 +272,11 @@ class Prepared:
         """
         try:
             block = np.asarray(values, np.float64)
-            is_block = not surplus and block.shape[:1] == (len(self.names),)
+            if surplus or block.shape[:1] != (len(self.names),):
+                raise ValueError
         except (TypeError, ValueError):
-            is_block = False
-        if not is_block:
             names = " ".join(self.names)
-            raise UserError(f"expected one array with a row for each of {names}")
+            raise UserError(f"expected one array with a row for each of {names}") from None
         if not block.flags.carray:
             block = block.copy()
         columns = [block[row].reshape(-1) for row in self._rows]

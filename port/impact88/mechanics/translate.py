@@ -49,8 +49,8 @@ def loop_text(formula: Formula) -> str:
     """Return the loop of a function over a strip, whose quantities are columns and rows."""
     operands = [f"in[AT_{n}][i]" if n in COLUMNS else f"row[AT_{n}][i]" for n in formula.takes]
     operands += [f"&row[AT_{name}][i]" for name in formula.gives]
-    call = f"EACH {formula.tree.name}({', '.join(operands)});"
-    return f"CLONES void each_{formula.name}(const double *const *in, ROW *row)\n{{\n    {call}\n}}"
+    head = f"CLONES void each_{formula.name}(const double *const *in, ROW *row)"
+    return f"{head}\n{{\n    EACH {formula.tree.name}({', '.join(operands)});\n}}"
 
 
 def header() -> str:
