@@ -79,7 +79,7 @@ class Plan(NamedTuple):
     steps : tuple of (Formula, int)
         Formulas in an order in which each finds what it takes, with their guards.
     inputs : tuple of str
-        Columns and known quantities that the steps take.
+        Columns and known quantities that the steps take, or that are wanted.
     missing : dict of str to tuple of str
         Wanted quantities that do not follow from what is known -> the columns that they lack.
     """
