@@ -94,9 +94,8 @@ def complete(known: Mapping[str, ArrayLike]) -> Completed:
     *more, gn, waf, wbf = evaluate(values, (*open_laws, "MU", "gn", "waf", "wbf"))[0].values()
     values |= zip((*open_laws, "MU"), more, strict=True)
     divisors = {"E": gn, "MUP": values["PN"], "EM": waf - wbf + values["PM"] * (ia + ib)}
-    volume = -np.log(np.abs(given))
-    for name in open_laws:
-        volume = volume - np.log(np.abs(divisors[name]))
     forward, _ = evaluate({name: values[name] for name in SCENE if name in values}, "D")
-    volume = volume + np.log(np.abs(forward["D"] * (ia + ib)))
-    return Completed(values, np.broadcast_to(volume, np.shape(found["PN"])))
+    ratio = forward["D"] * (ia + ib) / given
+    for name in open_laws:
+        ratio = ratio / divisors[name]
+    return Completed(values, np.broadcast_to(np.log(np.abs(ratio)), np.shape(found["PN"])))

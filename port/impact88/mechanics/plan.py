@@ -193,6 +193,7 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 
+@lru_cache
 def _sources(known: frozenset[str]) -> dict[str, Formula]:
     """Return the formula to take for each quantity that follows from what is known.
 
