@@ -317,8 +317,10 @@ def _read_columns(columns: Any, wanted: Names, given: Names = ()) -> dict[str, A
         if names is None:
             kind = type(columns).__name__
             raise UserError(f"{kind} has no columns; expected a mapping or a data frame")
-    numbers = {name: _as_doubles(name, columns[name]) for name in SCENE if name in names}
-    numbers |= {name: _UNUSED[name] for name in given}
+    numbers: dict[str, Any] = {name: _UNUSED[name] for name in given}
+    for name in SCENE:
+        if name in names and name not in numbers:
+            numbers[name] = _as_doubles(name, columns[name])
     _complete_points(numbers)
     if len(numbers) < len(SCENE):
         if lacking := [name for name in plan(wanted).inputs if name not in numbers]:
