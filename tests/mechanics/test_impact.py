@@ -99,6 +99,7 @@ def test_prepared_takes_numbers_and_arrays():
     loss = prepared("MU,E", "LOSS", sample(1))
     alone_value = solve({**sample(1).numbers(), "MU": 0.5, "E": 0.2}, "LOSS")["LOSS"]
     assert loss([0.5, 0.2])["LOSS"] == alone_value
+    assert prepared("E MU", "LOSS", {**sample(1), "MU": "?"})([0.2, 0.5])["LOSS"] == alone_value
     assert isinstance(loss([0.5, 0.2])["LOSS"], float)
     assert np.all(loss(np.full((2, 2, 3), [[[0.5]], [[0.2]]]))["LOSS"] == alone_value)
     with pytest.raises(UserError, match="one array with a row for each of MU E"):
@@ -237,6 +238,8 @@ def test_values_of_other_types():
         ({"MU": np.ones(3), "E": np.ones(4)}, {}, r"do not broadcast together: E \(4,\), MU"),
         ({}, {"results": "VX"}, "'VX' is not a result"),
         ({}, {"results": ""}, "no result is asked for"),
+        ({}, {"threads": "x"}, "threads is 'x'; expected a whole number above 0"),
+        ({}, {"threads": 0}, "threads is 0; expected a whole number above 0"),
         (
             {"MU": np.ones(3)},
             {"out": {"VAX": np.ones(2)}},

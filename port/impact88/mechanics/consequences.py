@@ -43,12 +43,6 @@ def front_of_a(TA):
     return (front_a,)
 
 
-def front_of_b(TB):
-    """Return the direction of B's front."""
-    front_b = TB
-    return (front_b,)
-
-
 def changes_along_vehicle(ax, ay, front_a):
     """Return the velocity change forward and to the vehicle's right."""
     sine, cosine = sine_and_cosine(front_a)

@@ -61,6 +61,19 @@ FRICTION_TOLERANCE = 1e-9  # of P_t/P_n: above rounding, below the last digit an
 SIDE_TOLERANCE = 1e-9  # of a center beyond the contact plane, as a fraction of its distance
 
 
+# -- vectors
+
+
+def dot(x, y, u, v):
+    """Return the inner product of (x, y) and (u, v)."""
+    return x * u + y * v
+
+
+def cross(x, y, u, v):
+    """Return the cross product of (x, y) and (u, v)."""
+    return x * v - y * u
+
+
 def sine_and_cosine(degrees):
     """Return sine and cosine of an angle in degrees.
 
@@ -88,22 +101,9 @@ def sine_and_cosine(degrees):
     ))  # fmt: skip
     sin_k = k * (2.0 - fabs(k))
     cos_k = 1.0 - fabs(k)
-    sine = sin_k * cos_r + cos_k * sin_r
-    cosine = cos_k * cos_r - sin_k * sin_r
+    sine = dot(sin_k, cos_k, cos_r, sin_r)
+    cosine = cross(cos_k, sin_k, sin_r, cos_r)
     return sine, cosine
-
-
-# -- vectors
-
-
-def dot(x, y, u, v):
-    """Return the inner product of (x, y) and (u, v)."""
-    return x * u + y * v
-
-
-def cross(x, y, u, v):
-    """Return the cross product of (x, y) and (u, v)."""
-    return x * v - y * u
 
 
 # -- the scene
@@ -253,20 +253,14 @@ def pivot_impulse(
     return D_p, Nn, Nt, h_p
 
 
-def impulse(MU, MUP, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
-    """Return the impulse, h and the determinant."""
+def impulse(M, MU, MUP, em, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
+    """Return the impulse, the moment impulse and the determinant."""
     pivot = MU == PIVOT
     D = where(pivot, D_p, D_s)
     PN = where(pivot, Nn, Pn_s) / D
     PT = where(pivot, Nt / D, MUP * PN)
-    h = where(pivot, h_p, h_s) / D
-    return PN, PT, h, D
-
-
-def moment_impulse(M, em, h):
-    """Return the moment impulse."""
-    PM = where(M == 4.0, 0.0, (1.0 - em) * h)
-    return (PM,)
+    PM = where(M == 4.0, 0.0, (1.0 - em) * (where(pivot, h_p, h_s) / D))
+    return PN, PT, PM, D
 
 
 # -- after the impact
@@ -274,8 +268,8 @@ def moment_impulse(M, em, h):
 
 def velocity_changes(PN, PT, s, c, ma, mb):
     """Return the velocity changes along x and y."""
-    Px = c * PN - s * PT
-    Py = s * PN + c * PT
+    Px = cross(c, s, PT, PN)
+    Py = dot(c, s, PT, PN)
     ax = ma * Px
     ay = ma * Py
     bx = -(mb * Px)
@@ -415,8 +409,8 @@ def finite_inertia(M, MA, IA):
 
 def energy(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
     """Return the kinetic energy."""
-    turning = ja * wa * wa + jb * wb * wb
-    KI = 0.5 * (fa * dot(UX, UY, UX, UY) + fb * dot(VX, VY, VX, VY) + turning)
+    moving = dot(fa, fb, dot(UX, UY, UX, UY), dot(VX, VY, VX, VY))
+    KI = 0.5 * (moving + dot(ja * wa, jb * wb, wa, wb))
     return (KI,)
 
 
@@ -464,10 +458,7 @@ def condition_number(MU, MUP, em, z, D, R, J, Ired, sn, st, an, at, bn, bt, ia, 
     """Return the determinant with absolute values in every sum, over itself."""
     size = fabs(MUP)
     z_ = fabs(z)
-    sn_ = fabs(an) + fabs(bn)
-    st_ = fabs(at) + fabs(bt)
-    kn_ = fabs(an) * ia + fabs(bn) * ib
-    kt_ = fabs(at) * ia + fabs(bt) * ib
+    sn_, st_, kn_, kt_ = combined_arms(fabs(an), fabs(at), fabs(bn), fabs(bt), ia, -ib)
     of_s = z_ * (R * (1.0 + size) + J * sn_ * (sn_ + size * st_)) + fabs(em) * (
         Ired * kn_ * (kn_ + size * kt_)
     )
@@ -520,8 +511,8 @@ def friction_bits(MU, MUP, an, at, bn, bt, ia, ib, kt, R, gn, gt, PN, PM, D_p, N
     backward = along < -FRICTION_TOLERANCE
     no_sliding = (pushing > 0.0) & (critical <= FRICTION_TOLERANCE * pushing)
     beyond = (pushing > 0.0) & ((along - FRICTION_TOLERANCE) * pushing > critical)
-    turned = (an * at * ia + bn * bt * ib) * PN + kt * PM
-    back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
+    turned = dot(an * at, bn * bt, ia, ib) * PN + kt * PM
+    back = (fabs(friction) - FRICTION_TOLERANCE) * (PN * (R + dot(at * at, bt * bt, ia, ib)))
     size = fabs(turned)
     excess = fabs(gt) + fabs(gt) - size
     gap = excess - back

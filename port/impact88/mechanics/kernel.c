@@ -50,21 +50,21 @@ const char *instructions(void)
     return "baseline";
 }
 
-/* ``plan``: the numbers of inputs, of functions that run once, of functions, of results, and the row
-   of `fit`; then number and step of each input (step 0: one number for all scenes), function and
-   guard (1: where pivots are, 2: where others are) in order, row and kind of each result (0: finite,
-   1: may be infinite, 2: STATUS, 3: as computed). ``places``: the addresses of the inputs, then of
-   the results. */
+/* ``plan``: the numbers of inputs that are one number for all scenes, of inputs, of functions, of
+   results, and whether results are checked; the rows of inputs and of results; then function, guard
+   (1: where pivots are, 2: where others are) and whether it varies with the scene, in order.
+   ``places``: the addresses of the numbers, of the other inputs, and of the results. */
 void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
 {
     ROW row[ROWS]; /* those of columns: of numbers, and of the last strip's ends */
-    const int64_t *input = plan + 5, *step = input + 2 * plan[0], *result = step + 2 * plan[2];
+    const int64_t fixed = plan[0], inputs = plan[1], steps = plan[2], results = plan[3];
+    const int64_t checked = plan[4], *input = plan + 5, *result = input + inputs;
     const double *in[COLUMNS] = {0};
     for (int64_t at = begin; at < end; at += STRIP) {
         int64_t count = end - at < STRIP ? end - at : STRIP, pivots = 0;
-        for (int64_t k = 0; k < plan[0]; k++) {
-            const double *from = places[k];
-            int64_t n = input[2 * k], varies = input[2 * k + 1];
+        for (int64_t k = 0; k < inputs; k++) {
+            int64_t n = input[k], varies = k >= fixed;
+            const double *from = varies ? places[1 + k - fixed] : (double *)places[0] + k;
             double *copy = row[n];
             if (n < COLUMNS) in[n] = varies && count == STRIP ? from + at : copy;
             if (n < COLUMNS && in[n] != copy) continue;
@@ -73,20 +73,21 @@ void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
             for (int64_t i = varies ? count : 1; i < STRIP; i++) copy[i] = copy[0];
         }
         if (in[AT_MU]) EACH pivots += in[AT_MU][i] == PIVOT;
-        for (int64_t k = at == begin ? 0 : plan[1]; k < plan[2]; k++) {
-            int64_t guard = step[2 * k + 1];
-            if (guard == 1 ? !pivots : guard == 2 && pivots == STRIP) continue;
-            loops[step[2 * k]](in, row);
+        const int64_t *step = result + results;
+        for (int64_t k = 0; k < steps; k++, step += 3) {
+            int64_t guard = step[1], varies = step[2];
+            if (varies && (guard == 1 ? !pivots : guard == 2 && pivots == STRIP)) continue;
+            if (varies || at == begin) loops[step[0]](in, row); /* others: a later strip has pivots */
         }
-        for (int64_t k = 0; k < plan[3]; k++) {
-            int64_t kind = result[2 * k + 1], size = kind == 2 ? 2 : 8;
-            const double *x = row[result[2 * k]], *fit = row[plan[4]];
-            char *there = (char *)places[plan[0] + k] + at * size;
+        for (int64_t k = 0; k < results; k++) {
+            int64_t n = result[k], bits = checked && n == AT_STATUS, size = bits ? 2 : 8;
+            const double *x = row[n], *fit = row[AT_fit];
+            char *there = (char *)places[1 + inputs - fixed + k] + at * size;
             double last[STRIP];
-            void *to = count == STRIP && kind < 3 ? (void *)there : last;
-            if (kind == 2) finish_bits(x, fit, to);
-            else if (kind < 2) finish(x, fit, to, kind ? INFINITY : LARGEST);
-            if (to == last) memcpy(there, kind < 3 ? to : x, (size_t)(count * size));
+            void *to = count == STRIP && checked ? (void *)there : last;
+            if (bits) finish_bits(x, fit, to);
+            else if (checked) finish(x, fit, to, n == AT_COND ? INFINITY : LARGEST);
+            if (to == last) memcpy(there, checked ? to : x, (size_t)(count * size));
         }
     }
 }

@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import chain, pairwise
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from .. import library
 from ..errors import UserError
 from ..names import PIVOT
+from ..status import Status
 from . import consequences, formulas
 from .plan import COMPILED, FORMULAS, OTHERS, PIVOTS, ROWS, Step, plan
 from .translate import digest
@@ -27,14 +28,7 @@ Array = NDArray[Any]
 STRIP = 2048  # scenes that numpy computes at a time: some fifty arrays fit the second-level cache
 SCENES_PER_THREAD = 1 << 14  # fewer are not worth starting a thread
 PROCESSORS = os.cpu_count() or 1
-NOT_FINITE = 64.0
-# kinds of results in `kernel.c`
-FINITE = 0
-ANY_SIZE = 1
-BITS = 2  # STATUS
-RAW = 3  # as computed
-KINDS = {"STATUS": BITS, "COND": ANY_SIZE}  # of checked results; the others are finite
-NUMBERS = {name: number for number, name in enumerate(COMPILED)}  # of loops in the library
+LOOPS = [*COMPILED]  # in the order of the library
 _functions = {
     name: getattr(formulas if name in COMPILED else consequences, formula.tree.name)
     for name, formula in FORMULAS.items()
@@ -47,7 +41,7 @@ def _load() -> Any:
     part = library.loaded("mechanics_formulas", digest())
     if part is not None:
         number, pointer = ctypes.c_int64, ctypes.c_void_p
-        part.solve.argtypes, part.solve.restype = [pointer, pointer, number, number], None
+        part.solve.argtypes = [pointer, pointer, number, number]
     return part
 
 
@@ -89,39 +83,36 @@ class Kernel:
         is_checked: bool,
     ) -> None:
         steps, _, self.missing = plan((*wanted, "fit") if is_checked else wanted, known)
-        compiled: list[Step] = []
+        self._steps: list[Step] = []
         self.following: list[Step] = []
-        for formula, guard in steps:
-            is_compiled = formula.name in COMPILED and known.isdisjoint(formula.gives)
-            is_compiled = is_compiled and _gives(self.following).isdisjoint(formula.takes)
-            (compiled if is_compiled else self.following).append((formula, guard))
-        given = _gives(compiled)
-        inputs = _takes(compiled) - given
-        needed = dict.fromkeys((*wanted, *_takes(self.following)))
-        self.results = [name for name in needed if name in given]
-        self.fixed = [name for name in inputs if name not in varying]
-        self.changing = [name for name in inputs if name in varying]
-        self._kinds = [KINDS.get(name, FINITE) if is_checked else RAW for name in self.results]
-        self._bits = [row for row, kind in enumerate(self._kinds) if kind == BITS]
+        inputs: set[str] = set()
+        given: set[str] = set()
+        left: set[str] = set()  # what numpy gives afterwards
         changing = set(varying)
-        once: list[Step] = []
-        each: list[Step] = []
-        for formula, guard in compiled:
-            if changing.isdisjoint(formula.takes):
-                once.append((formula, 0))  # a later strip may have the pivots that the first lacks
+        calls: list[int] = []
+        for formula, guard in steps:
+            takes, gives = formula.takes, formula.gives
+            if formula.name in COMPILED and known.isdisjoint(gives) and left.isdisjoint(takes):
+                varies = not changing.isdisjoint(takes)
+                if varies:
+                    changing.update(gives)
+                calls += (LOOPS.index(formula.name), guard, varies)
+                self._steps.append((formula, guard))
+                inputs.update(takes)
+                given.update(gives)
             else:
-                each.append((formula, guard))
-                changing.update(formula.gives)
-        self._steps = once + each
-        pairs = [
-            *((ROWS[name], 0) for name in self.fixed),
-            *((ROWS[name], 1) for name in self.changing),
-            *((NUMBERS[formula.name], guard) for formula, guard in self._steps),
-            *((ROWS[name], kind) for name, kind in zip(self.results, self._kinds, strict=True)),
-        ]
-        sizes = (len(inputs), len(once), len(compiled), len(self.results), ROWS["fit"])
-        self._plan = np.array([*sizes, *chain(*pairs)], np.int64)
-        (self._plan_address,) = addresses([self._plan])
+                self.following.append((formula, guard))
+                wanted += takes
+                left.update(gives)
+        inputs -= given
+        self.fixed = [*inputs - varying]
+        self.changing = [*inputs & varying]
+        self.results = [name for name in dict.fromkeys(wanted) if name in given]
+        self._is_checked = is_checked
+        self._bits = [k for k, name in enumerate(self.results) if is_checked and name == "STATUS"]
+        rows = [ROWS[name] for name in (*self.fixed, *self.changing, *self.results)]
+        sizes = (len(self.fixed), len(inputs), len(self._steps), len(self.results), is_checked)
+        self._plan = np.array([*sizes, *rows, *calls], np.int64)
 
     def compute(
         self,
@@ -153,21 +144,22 @@ class Kernel:
         """
         count = math.prod(shape)
         places = addresses(columns)
-        if out is None:
+        if out is None:  # one block: its rows do not share lines of the cache
             block = np.empty((len(self.results), count))
             arrays = [*block]
-            starts = _row_addresses(block)
             for row in self._bits:
                 arrays[row] = arrays[row].view(np.uint16)[:count]
+            (first,) = addresses([block])
+            starts: Sequence[int] = range(first, first + block.nbytes, block.strides[0] or 8)
         else:
-            arrays = [_output_array(out, name, shape) for name in self.results]
+            arrays = [_output_array(out.get(name), name, shape) for name in self.results]
             starts = addresses(arrays)
             _check_overlap((places, columns), (starts, arrays))
         if _compiled is None or library.is_switched_off():
             self._run_by_numpy(numbers, columns, [array.reshape(-1) for array in arrays])
         else:
-            table = np.array([*_row_addresses(numbers), *places, *starts], np.int64)
-            work = partial(_compiled.solve, self._plan_address, *addresses([table]))
+            table = np.array([*addresses([numbers]), *places, *starts], np.int64)
+            work = partial(_compiled.solve, *addresses([self._plan, table]))
             run_in_threads(work, count, threads)
         if out is None and len(shape) != 1:
             arrays = [array.reshape(shape) if shape else array[0] for array in arrays]
@@ -182,23 +174,12 @@ class Kernel:
             values = dict(zip(self.fixed, numbers, strict=True))
             values |= {n: x[part] for n, x in zip(self.changing, columns, strict=True)}
             run_formulas(self._steps, values)
-            for row, name, kind in zip(rows, self.results, self._kinds, strict=True):
-                row[part] = output(values, name, kind)
+            for row, name in zip(rows, self.results, strict=True):
+                row[part] = finish(values, name) if self._is_checked else values[name]
 
 
-def _takes(steps: Sequence[Step]) -> set[str]:
-    """Return the quantities that formulas take."""
-    return {x for formula, _ in steps for x in formula.takes}
-
-
-def _gives(steps: Sequence[Step]) -> set[str]:
-    """Return the quantities that formulas give."""
-    return {x for formula, _ in steps for x in formula.gives}
-
-
-def _output_array(out: Mapping[str, Any], name: str, shape: tuple[int, ...]) -> Any:
-    """Return the array for a result. Raises UserError where it cannot take results of a shape."""
-    array: Any = out.get(name)
+def _output_array(array: Any, name: str, shape: tuple[int, ...]) -> Any:
+    """Return an array for a result. Raises UserError where it cannot take results of a shape."""
     dtype: type = np.uint16 if name == "STATUS" else np.float64
     is_array = isinstance(array, np.ndarray) and array.flags.carray
     if not is_array or array.shape != shape or array.dtype != dtype:
@@ -232,20 +213,12 @@ def run_formulas(steps: Sequence[Step], values: dict[str, Any]) -> None:
             values.setdefault(quantity, array)
 
 
-def output(values: Mapping[str, Any], name: str, kind: int) -> Any:
+def finish(values: Mapping[str, Any], name: str) -> Any:
     """Return a result as the library writes it."""
     x = values[name]
-    if kind == RAW:
-        return x
-    largest = np.inf if kind == ANY_SIZE else formulas.LARGEST
+    largest = np.inf if name == "COND" else formulas.LARGEST
     is_usable = (values["fit"] == 1.0) & (np.abs(x) <= largest)
-    return np.where(is_usable, x + 0.0, NOT_FINITE if kind == BITS else np.nan)
-
-
-def _row_addresses(block: Array) -> Sequence[int]:
-    """Return the addresses of an array's rows."""
-    (first,) = addresses([block])
-    return range(first, first + block.nbytes, block.strides[0] or 8)
+    return np.where(is_usable, x + 0.0, Status.NOT_FINITE if name == "STATUS" else np.nan)
 
 
 def addresses(arrays: Sequence[Any]) -> list[int]:

@@ -69,10 +69,10 @@ def margins(
     """
     speed, mass, length = scale
     impulse, spin = mass * speed, speed / length
-    values, _ = evaluate(known, "gn PN PT EL VS waf wbf PM ia ib MUC")
-    gn, pn, pt, lost, vs, waf, wbf, moment, ia, ib, critical = values.values()
+    values, _ = evaluate(known, "VC PN PT EL VS waf wbf PM ia ib MUC")
+    vc, pn, pt, lost, vs, waf, wbf, moment, ia, ib, critical = values.values()
     pn, pt = pn / impulse, pt / impulse
-    closing, separation = -gn / speed, vs / speed
+    closing, separation = vc / speed, vs / speed
     turning = (waf - wbf) / spin
     low, high = friction_range(critical)
     return {

@@ -21,10 +21,10 @@ HELPERS = ("sine_and_cosine", "dot", "cross")
 BODIES = (
     "MA IA DA PA TA UX UY WA VAX VAY WAF XA YA XAF YAF DVA EESA CAX CAY D3 D4 SA SAF HA HAF DVAF "
     "DVAR PDOFA ma ia fa ja wa an at ax ay da angle_a part_a own_a given_a wa_s wa_p state_a "
-    "free_a front_a",
+    "free_a front_a",  # B faces along TB
     "MB IB DB PB TB VX VY WB VBX VBY WBF XB YB XBF YBF DVB EESB CBX CBY D1 D2 SB SBF HB HBF DVBF "
     "DVBR PDOFB mb ib fb jb wb bn bt bx by db angle_b part_b own_b given_b wb_s wb_p state_b "
-    "free_b front_b",
+    "free_b TB",
 )
 """Quantities of A, and the same ones of B: what gives some of A's alone gives B's, too."""
 TIMES = (
@@ -79,7 +79,7 @@ class Plan(NamedTuple):
     steps : tuple of (Formula, int)
         Formulas in an order in which each finds what it takes, with their guards.
     inputs : tuple of str
-        Columns and known quantities that the steps take.
+        Columns and known quantities that the steps take, or that are wanted.
     missing : dict of str to tuple of str
         Wanted quantities that do not follow from what is known -> the columns that they lack.
     """
@@ -110,17 +110,16 @@ def _repeat(
     formulas: Mapping[str, Formula], suffix: str, names: str, others: str
 ) -> dict[str, Formula]:
     """Return formulas by name, each that gives some of ``names`` alone followed by the same for the
-    ``others``, unless these have a formula of their own."""
+    ``others``."""
     first, second = names.split(), others.split()
-    exchange = dict(zip(first + second, second + first, strict=True))
-    own = {formula.gives for formula in formulas.values()}
+    exchange = dict(zip(second + first, first + second, strict=True))
     repeated = {}
     for name, formula in formulas.items():
         repeated[name] = formula
-        takes, gives = (
-            tuple(exchange.get(x, x) for x in side) for side in (formula.takes, formula.gives)
-        )
-        if {*first}.issuperset(formula.gives) and gives not in own:
+        if {*first}.issuperset(formula.gives):
+            takes, gives = (
+                tuple(exchange.get(x, x) for x in side) for side in (formula.takes, formula.gives)
+            )
             repeated[name + suffix] = Formula(name + suffix, takes, gives, formula.tree)
     return repeated
 
@@ -141,8 +140,6 @@ ROWS = {
     for row, name in enumerate((*COLUMNS, *(x for f in COMPILED.values() for x in f.gives)))
 }
 """Name -> number of the column or quantity in the compiled library."""
-GIVERS = {x: f for f in reversed(FORMULAS.values()) for x in f.gives if x not in COLUMNS}
-"""Quantity -> the formula that gives it, of several the first."""
 QUANTITIES = dict.fromkeys((*ROWS, *(x for f in FORMULAS.values() for x in f.gives)))
 """Names of everything that can be known or asked for."""
 
@@ -174,10 +171,14 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     {'KI': ('IA', 'IB')}
     """
     sources = _sources(known)
-    missing = {x: _lacking(x, known) for x in wanted if x not in known and x not in sources}
-    quantities = {x for x in wanted if x in sources}
+    missing = {
+        x: tuple(n for n in plan((x,), known.union(COLUMNS)).inputs if n not in known)
+        for x in wanted
+        if x not in known and x not in sources
+    }
+    quantities = set(wanted)
     everywhere = set(wanted)  # quantities that all scenes need
-    inputs: set[str] = set()
+    inputs = {*known.intersection(wanted)}
     steps: list[Step] = []
     for formula in reversed(dict.fromkeys(sources.values())):  # users of a formula come before it
         used = {x for x in quantities.intersection(formula.gives) if sources.get(x) is formula}
@@ -192,6 +193,7 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     return Plan(tuple(steps[::-1]), tuple(x for x in QUANTITIES if x in inputs), missing)
 
 
+@lru_cache
 def _sources(known: frozenset[str]) -> dict[str, Formula]:
     """Return the formula to take for each quantity that follows from what is known.
 
@@ -210,10 +212,5 @@ def _sources(known: frozenset[str]) -> dict[str, Formula]:
                 sources.setdefault(quantity, ready)
 
 
-def _lacking(quantity: str, known: frozenset[str]) -> tuple[str, ...]:
-    """Return what a quantity needs, by the formula that gives it, and that is not known."""
-    lacking = [quantity]
-    for name in lacking:
-        if name in GIVERS:
-            lacking += [x for x in GIVERS[name].takes if x not in known and x not in lacking]
-    return tuple(name for name in QUANTITIES if name in lacking and name not in GIVERS)
+GIVERS = _sources(frozenset(COLUMNS))
+"""Quantity -> the formula that gives it where all columns are known."""

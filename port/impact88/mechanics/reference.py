@@ -1,17 +1,20 @@
-"""The reference: every result of a scene to 50 digits, those of mpmath (extra ``oracle``).
+"""The reference: every result of a scene to 50 digits, by mpmath's intervals (extra ``oracle``).
 
-It shares nothing with `formulas`. The impulse (Pn, Pt, M) solves Equations 15, 16 (or no slip at
-separation) and 18 by Cramer's rule with so many digits that nothing is lost; everything else
-follows from the impulse, and what cancels to less than 50 digits is 0. Without mpmath the import of
-this module is a UserError. To add a result, add its line where `_results` says so.
+It shares nothing with `formulas`. `equations` gives impulse and velocities, everything else follows
+from these, with so many digits that nothing is lost. Each number is an interval that holds the
+exact one; one that holds 0 is 0. Without mpmath the import of this module is a UserError. To add a
+result, add its line where `_results` says so.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
+from math import inf
 from typing import Any
 
 from ..decimals import exact
 from ..errors import UserError, library
 from ..names import FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from . import equations
+from .equations import dot
 
 DIGITS = 50  # correct digits: three times a double's
 WRITTEN = 30  # digits of a text; the chapter's worked cases have as many
@@ -19,7 +22,8 @@ GUARD = 15  # further working digits, to which those for the spread of a scene's
 UNUSED = ("DA", "DB", "PA", "PB", "TA", "TB", "EM", "WA", "WB")  # by point masses
 
 mpmath: Any = library("mpmath", "oracle", "the reference in 50 digits")
-Number = Any  # mpmath.mpf, which has no usable type
+intervals = mpmath.ctx_iv.MPIntervalContext()
+Number = Any  # mpmath.mpf, or an interval; neither has a usable type
 
 
 def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
@@ -45,16 +49,8 @@ def thirty_digits(scene: Mapping[str, str | float]) -> dict[str, str]:
     >>> thirty_digits(impact88.sample(1))["VAX"]
     '-13.262655683532704239235175342'
     """
-    try:
-        values = results(scene)
-    except ZeroDivisionError:  # a mass of 0
-        return {}
-    with mpmath.workdps(DIGITS):
-        return {
-            name: mpmath.nstr(value, WRITTEN) if value else "0"
-            for name, value in values.items()
-            if mpmath.isfinite(value)
-        }
+    values = results(scene)
+    return {name: mpmath.nstr(x, WRITTEN) if x else "0" for name, x in values.items()}
 
 
 def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
@@ -71,119 +67,86 @@ def results(scene: Mapping[str, str | float]) -> dict[str, Number]:
     dict of str to mpf
         Results that have a value: none where the equations are singular.
     """
-    with mpmath.workdps(GUARD):
-        sizes = [abs(_number(x)) for name, x in scene.items() if name not in ("MU", "M")]
-        powers = [int(mpmath.log10(x)) for x in sizes if x and mpmath.isfinite(x)]
-    spread = max(powers, default=0) - min(powers, default=0)
-    with mpmath.workdps(DIGITS + GUARD + 3 * spread):
-        return _results({name: _number(x) for name, x in scene.items()})
+    numbers = {name: _number(x) for name, x in scene.items()}
+    powers = [int(mpmath.log10(abs(x))) for x in numbers.values() if 0 < abs(x) < inf]
+    intervals.dps = DIGITS + GUARD + 3 * (max(powers, default=0) - min(powers, default=0))
+    enclosures = _results(
+        {n: intervals.mpf(x if isinstance(x, float) else str(x)) for n, x in numbers.items()}
+    )
+    with mpmath.workdps(DIGITS):  # the middle of an interval that holds everything is NaN
+        values = {name: mpmath.mpf(x.mid) * (0 not in x) for name, x in enclosures.items()}
+        values |= {n: mpmath.sqrt(values[n]) for n in values if n in ("EESA", "EESB")}
+    return {name: x for name, x in values.items() if mpmath.isfinite(x)}
 
 
-def _number(value: str | float) -> Number:
-    """Return a number at the working precision. Raises UserError for a text that is none."""
-    if not isinstance(value, str):
-        return mpmath.mpf(value)
+def _number(value: str | float) -> Any:
+    """Return an exact number. Raises UserError for a text that is none."""
     try:
-        fraction = exact(value)
+        return exact(value) if isinstance(value, str) else value
     except ValueError as error:
         raise UserError(f"{error}; expected a number") from None
-    return mpmath.mpf(fraction.numerator) / fraction.denominator
-
-
-def _total(*terms: Number) -> Number:
-    """Return a sum; 0 where it is nothing but rounding."""
-    total = mpmath.fsum(terms)
-    noise = max(map(abs, terms)) * mpmath.mpf(10) ** -DIGITS
-    return total if abs(total) > noise else mpmath.mpf(0)
-
-
-def _products(rows: Iterable[Iterable[Number]], column: Sequence[Number]) -> list[Number]:
-    """Return the product of each row with a column, sums as `_total`."""
-    return [_total(*(a * b for a, b in zip(row, column, strict=True))) for row in rows]
-
-
-def _cross(first: Sequence[Number], second: Sequence[Number]) -> list[Number]:
-    """Return the cross product of two columns."""
-    x, y, z = first
-    u, v, w = second
-    return [_total(y * w, -z * v), _total(z * u, -x * w), _total(x * v, -y * u)]
-
-
-def _solve_three(rows: Sequence[Sequence[Number]], right: Sequence[Number]) -> list[Number] | None:
-    """Return the solution of three equations by Cramer's rule, None where they are singular."""
-    columns = list(zip(*rows, strict=True))
-    crosses = [_cross(columns[k - 2], columns[k - 1]) for k in range(3)]
-    (divisor,) = _products(crosses[:1], columns[0])
-    return [x / divisor for x in _products(crosses, right)] if divisor else None
 
 
 def _results(scene: dict[str, Number]) -> dict[str, Number]:
     """Return the results of a scene's numbers."""
     g = scene
-    is_point, is_pivot = g.get("M", 6) == 4, g["MU"] == PIVOT
+    zero = intervals.mpf(0)
+    is_point = g.get("M", 6) == 4
     if is_point:
-        g = {**g, **dict.fromkeys(UNUSED, mpmath.mpf(0)), "IA": mpmath.mpf(1), "IB": mpmath.mpf(1)}
+        g = {**g, **dict.fromkeys(UNUSED, zero), "IA": 1 + zero, "IB": 1 + zero}
     c, s = _vector(1, g["GA"])
     # from the centers to the contact point
     xa, ya = _vector(-g["DA"], g["TA"] + g["PA"])
     xb, yb = _vector(g["DB"], g["TB"] + g["PB"])
-    # by the six velocities: those of the contact points along x and y; A's minus B's along n and t
-    # and of the spins
-    contact = [
-        [1, 0, -ya, 0, 0, 0],
-        [0, 1, xa, 0, 0, 0],
-        [0, 0, 0, 1, 0, -yb],
-        [0, 0, 0, 0, 1, xb],
-    ]
-    relative = [_products(zip(*contact, strict=True), x) for x in ((c, s, -c, -s), (-s, c, s, -c))]
+    contact = {  # velocities of the contact points along x and y by the six velocities
+        "XA": (1, 0, -ya, 0, 0, 0),
+        "YA": (0, 1, xa, 0, 0, 0),
+        "XB": (0, 0, 0, 1, 0, -yb),
+        "YB": (0, 0, 0, 0, 1, xb),
+    }
+    # A's minus B's along n and t, and of the spins
+    sides = [*zip(*contact.values(), strict=True)]
+    relative = [[dot(x, side) for side in sides] for x in ((c, s, -c, -s), (-s, c, s, -c))]
     relative.append([0, 0, 1, 0, 0, -1])
     masses = [g[name] for name in ("MA", "MA", "IA", "MB", "MB", "IB")]
-    changes = [[x / m for x, m in zip(row, masses, strict=True)] for row in relative]
+    inverse = [1 / m for m in masses]
     before = [g[name] for name in VELOCITIES]
-    gn, gt, gw = _products(relative, before)
-    mu = g["MU"] if is_pivot or gt <= 0 else -g["MU"]
-
-    # Equations 15, 16 (or no slip at separation) and 18 for Pn, Pt and the moment
-    normal, tangential, turning = (_products(changes, row) for row in relative)
-    e, em = g["E"], g["EM"]
-    moment = [(1 - em) * x for x in turning[:2]] + [(1 - 2 * em) * turning[2]]
-    right = [-(1 + e) * gn, -gt, (em - 1) * gw]
-    no_slip = _solve_three([normal, tangential, moment], right)
-    sliding = _solve_three([normal, [-mu, 1, 0], moment], [right[0], 0, right[2]])
-    P = no_slip if is_pivot else sliding
-    if P is None:
+    gn, gt, _ = (dot(row, before) for row in relative)
+    is_pivot = g["MU"] == PIVOT
+    mu = -g["MU"] if gt.a > 0 and not is_pivot else g["MU"]
+    known = {**g, "MUP": mu}
+    no_slip, _ = equations.impact(known, True, relative, inverse)
+    f, _ = equations.impact(known, is_pivot, relative, inverse)
+    if not mpmath.isfinite(f["PT"].mid):  # the determinant's interval holds 0
         return {}
-    after = _products(zip(before, *changes, strict=True), (1, *P))
-    sums = [_total(u, v) for u, v in zip(before, after, strict=True)]
-    works = [-p * v / 2 for p, v in zip(P, _products(relative, sums), strict=True)]
-    lost, size = _total(*works), mpmath.hypot(*P[:2])
-    ma, mb = 1 / g["MA"], 1 / g["MB"]
-    part = max(lost, 0) * (1 if ma and mb else 2)
-    names = (*FINAL_STATE, *IMPULSES, "ELN", "ELT", "ELM")
-    f: dict[str, Number] = dict(zip(names, (*after, *P, *works), strict=True))
-    for contacts, energy, v in (
-        (("XA", "YA", "XB", "YB"), "KI", before),
-        (("XAF", "YAF", "XBF", "YBF"), "KF", after),
-    ):
-        f |= zip(contacts, _products(contact, v), strict=True)
-        f[energy] = mpmath.fsum(m * x * x for m, x in zip(masses, v, strict=True) if x) / 2
+    after = [f[name] for name in FINAL_STATE]
+    sums = [u + v for u, v in zip(before, after, strict=True)]
+    P = [f[name] for name in IMPULSES]
+    works = [-p * dot(row, sums) / 2 for p, row in zip(P, relative, strict=True)]
+    f |= zip(("ELN", "ELT", "ELM"), works, strict=True)
+    for suffix, energy, six in (("", "KI", before), ("F", "KF", after)):
+        f |= {name + suffix: dot(row, six) for name, row in contact.items()}
+        squares = (m * x * x for m, x in zip(masses, six, strict=True) if x != 0)
+        f[energy] = sum(squares, zero) / 2
     if is_point:
         f |= {"WAF": scene["WA"], "WBF": scene["WB"]}
-    if f["KI"]:
-        f["LOSS"] = 100 * lost / f["KI"]
-    if no_slip and no_slip[0]:
-        f["MUC"] = no_slip[1] / no_slip[0]
+    lost, size = sum(works), intervals.sqrt(P[0] ** 2 + P[1] ** 2)
+    ma, mb = inverse[0], inverse[3]
+    part = (lost if lost.a > 0 else 0) * (2 if inf in (g["MA"], g["MB"]) else 1)
     # one line a result
     f["VC"] = -gn
-    f["VS"] = -e * gn
-    f["EESA"] = mpmath.sqrt(part * ma)
-    f["EESB"] = mpmath.sqrt(part * mb)
+    f["VS"] = -g["E"] * gn
+    f["EESA"] = part * ma  # squared
+    f["EESB"] = part * mb
     f["DVA"] = ma * size
     f["DVB"] = mb * size
+    f["LOSS"] = 100 * lost / f["KI"]
     f["MUP"] = mu
+    f["MUC"] = no_slip["PT"] / no_slip["PN"]
     return f
 
 
 def _vector(length: Number, degrees: Number) -> tuple[Number, Number]:
     """Return the vector of a length and a direction."""
-    return length * mpmath.cospi(degrees / 180), length * mpmath.sinpi(degrees / 180)
+    angle = degrees * intervals.pi / 180
+    return length * intervals.cos(angle), length * intervals.sin(angle)

@@ -94,8 +94,10 @@ def solve(
     """
     if results is None:
         results = tuple(RESULTS if out is None else out)
-    wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
-    shape, inputs, varying = _flatten(_read_columns(columns, needed))
+    if threads is not None and not (isinstance(threads, int | np.integer) and threads > 0):
+        raise UserError(f"threads is {quoted(threads)}; expected a whole number above 0, or None")
+    wanted = _result_names(tuple(split_names(results)))
+    shape, inputs, varying = _flatten(_read_columns(columns, wanted))
     kernel = _kernel(wanted, _COLUMNS, varying, True)
     return kernel.compute(*_select(inputs, kernel), shape, out, threads)
 
@@ -147,11 +149,11 @@ def evaluate(
     0.932
     """
     names = tuple(split_names(wanted))
+    check_names(names, QUANTITIES, "quantity of an impact")
     values = {x: _as_doubles(x, value) for x, value in known.items() if x in QUANTITIES}
     _complete_points(values)
     shape, inputs, varying = _flatten(values)
     kernel = _kernel(names, frozenset(values), varying, False)
-    check_names(kernel.missing, QUANTITIES, "quantity of an impact")
     values = {
         x: np.float64(value) if type(value) is float else value for x, value in values.items()
     }
@@ -159,10 +161,10 @@ def evaluate(
         values |= kernel.compute(*_select(inputs, kernel), shape)
     if kernel.following:
         run_formulas(kernel.following, values)
-    results = {name: values[name] for name in names if name not in kernel.missing}
     results = {
-        name: array if array.shape == shape else np.broadcast_to(array, shape)
-        for name, array in results.items()
+        name: x if (x := values[name]).shape == shape else np.broadcast_to(x, shape)
+        for name in names
+        if name not in kernel.missing
     }
     return results, kernel.missing
 
@@ -207,14 +209,7 @@ def prepared(
     >>> loss([[0.5, 0.911, -10]])["LOSS"].round(2)
     array([44.43, 57.47, 57.56])
     """
-    columns = tuple(split_names(names))
-    check_names(columns, SCENE, "scene name")
-    if not columns:
-        raise UserError(f"no scene name is given; expected some of {' '.join(SCENE)}")
-    if len(set(columns)) < len(columns):
-        raise UserError(f"a name appears twice in {' '.join(columns)}; expected each once")
-    wanted = tuple(RESULTS if results is None else split_names(results))
-    return Prepared(columns, wanted, {} if scene is None else scene)
+    return Prepared(names, results, scene)
 
 
 class Prepared:
@@ -222,11 +217,11 @@ class Prepared:
 
     Parameters
     ----------
-    names : tuple of str
+    names : sequence of str, or str
         The columns given at each call, in the order of their rows.
-    results : tuple of str
-        Names of the results.
-    scene : mapping of str to float
+    results : sequence of str, or str, optional
+        Names of the results; all of them by default.
+    scene : mapping of str to float, optional
         The columns that stay.
 
     Examples
@@ -237,17 +232,25 @@ class Prepared:
     """
 
     def __init__(
-        self, names: tuple[str, ...], results: tuple[str, ...], scene: Mapping[str, object]
+        self,
+        names: Sequence[str] | str,
+        results: Sequence[str] | str | None = None,
+        scene: Mapping[str, object] | None = None,
     ) -> None:
-        self.names = names
-        self.results, needed = _needed_columns(results)
-        stays = {name: value for name, value in needed.items() if name not in names}
-        shape, self._scene, varying = _flatten(_read_columns(scene, stays))
+        self.names = tuple(split_names(names))
+        check_names(self.names, SCENE, "scene name")
+        if not self.names:
+            raise UserError(f"no scene name is given; expected some of {' '.join(SCENE)}")
+        if len(set(self.names)) < len(self.names):
+            raise UserError(f"a name appears twice in {' '.join(self.names)}; expected each once")
+        self.results = _result_names(tuple(RESULTS if results is None else split_names(results)))
+        stays = _read_columns({} if scene is None else scene, self.results, self.names)
+        shape, self._scene, varying = _flatten(stays)
         if varying:
             raise UserError(f"{' '.join(varying)}: {shape} numbers; expected one that stays")
-        self._kernel = _kernel(self.results, _COLUMNS, frozenset(names), True)
-        self._numbers = np.array([self._scene[name] for name in self._kernel.fixed], np.float64)
-        self._rows = [names.index(name) for name in self._kernel.changing]
+        self._kernel = _kernel(self.results, _COLUMNS, frozenset(self.names), True)
+        self._numbers, _ = _select(self._scene, self._kernel)
+        self._rows = [self.names.index(name) for name in self._kernel.changing]
 
     def __call__(self, values: ArrayLike, *surplus: object) -> dict[str, Any]:
         """Return the results of scenes.
@@ -269,18 +272,15 @@ class Prepared:
         """
         try:
             block = np.asarray(values, np.float64)
-            is_block = not surplus and block.shape[:1] == (len(self.names),)
+            if surplus or block.shape[:1] != (len(self.names),):
+                raise ValueError
         except (TypeError, ValueError):
-            is_block = False
-        if not is_block:
             names = " ".join(self.names)
-            raise UserError(f"expected one array with a row for each of {names}")
+            raise UserError(f"expected one array with a row for each of {names}") from None
         if not block.flags.carray:
             block = block.copy()
-        shape = block.shape[1:]
-        rows = [*block.reshape(len(block), -1)]
-        columns = [rows[k] for k in self._rows]
-        return self._kernel.compute(self._numbers, columns, shape)
+        columns = [block[row].reshape(-1) for row in self._rows]
+        return self._kernel.compute(self._numbers, columns, block.shape[1:])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes an equal function of: no addresses."""
@@ -297,20 +297,18 @@ def _select(inputs: Mapping[str, Any], kernel: Kernel) -> tuple[Array, list[Arra
 
 
 @lru_cache(maxsize=512)
-def _needed_columns(results: str | Names) -> tuple[Names, Mapping[str, float | None]]:
-    """Return result names, each once, and the columns that are read, each with the value to take
-    where it is not given, None for one that the results need. Raises UserError."""
-    wanted = tuple(dict.fromkeys(split_names(results)))
+def _result_names(results: Names) -> Names:
+    """Return result names, each once. Raises UserError."""
+    wanted = tuple(dict.fromkeys(results))
     check_names(wanted, RESULTS, "result")
     if not wanted:
         raise UserError(f"no result is asked for; expected some of {' '.join(RESULTS)}")
-    needed = plan(wanted).inputs
-    columns = plan((*wanted, "fit")).inputs
-    return wanted, {name: None if name in needed else _UNUSED[name] for name in columns}
+    return wanted
 
 
-def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str, Any]:
-    """Return the needed columns of a mapping or frame as doubles. Raises UserError."""
+def _read_columns(columns: Any, wanted: Names, given: Names = ()) -> dict[str, Any]:
+    """Return all columns as doubles, those of a mapping or frame; those ``given`` later, and what
+    no wanted result needs, as usable numbers. Raises UserError."""
     names = columns
     if not isinstance(columns, Mapping):  # a frame: of pyarrow, or of pandas or polars
         names = None
@@ -319,14 +317,15 @@ def _read_columns(columns: Any, needed: Mapping[str, float | None]) -> dict[str,
         if names is None:
             kind = type(columns).__name__
             raise UserError(f"{kind} has no columns; expected a mapping or a data frame")
-    numbers = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
+    numbers: dict[str, Any] = {name: _UNUSED[name] for name in given}
+    for name in SCENE:
+        if name in names and name not in numbers:
+            numbers[name] = _as_doubles(name, columns[name])
     _complete_points(numbers)
-    if len(numbers) < len(needed):
-        for name, value in needed.items():
-            if value is not None:
-                numbers.setdefault(name, value)
-        if lacking := [name for name in needed if name not in numbers]:
+    if len(numbers) < len(SCENE):
+        if lacking := [name for name in plan(wanted).inputs if name not in numbers]:
             raise UserError(missing(lacking))
+        numbers = {**_UNUSED, **numbers}
     return numbers
 
 

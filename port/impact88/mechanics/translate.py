@@ -18,19 +18,20 @@ def statements(formula: Formula) -> list[str]:
     """Return a function's statements in C."""
     lines: list[str] = []
     for line in formula.tree.body:
+        text = ast.unparse(line)
+        target, _, value = text.partition(" = ")
+        names = target.strip("()")
         match line:
-            case ast.Assign(targets=[ast.Name()], value=value):
-                operator = getattr(value, "op", value)
+            case ast.Assign(targets=[ast.Tuple()]):  # by another function, of the places of results
+                lines += [f"double {names};", f"{value[:-1]}, &{names.replace(', ', ', &')});"]
+            case ast.Assign(value=whole):
+                operator = getattr(whole, "op", whole)
                 is_condition = isinstance(operator, ast.Compare | ast.BitAnd | ast.BitOr)
-                lines.append(f"{'int64_t' if is_condition else 'double'} {ast.unparse(line)};")
-            case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Call() as call):
-                places = [f"&{ast.unparse(name)}" for name in names]
-                lines.append(f"double {', '.join(map(ast.unparse, names))};")
-                lines.append(f"{ast.unparse(call).removesuffix(')')}, {', '.join(places)});")
-            case ast.Return(value=ast.Tuple(elts=names)):
-                lines += [f"*to_{name} = {name};" for name in map(ast.unparse, names)]
+                lines.append(f"{'int64_t' if is_condition else 'double'} {text};")
+            case ast.Return() if formula.gives:
+                lines += [f"*to_{name} = {name};" for name in formula.gives]
             case ast.Return():
-                lines.append(f"{ast.unparse(line)};")
+                lines.append(f"{text};")
     return lines
 
 
@@ -46,38 +47,35 @@ def function_text(formula: Formula) -> str:
 
 def loop_text(formula: Formula) -> str:
     """Return the loop of a function over a strip, whose quantities are columns and rows."""
-    places = {n: f"in[{k}][i]" if n in COLUMNS else f"row[{k}][i]" for n, k in ROWS.items()}
-    operands = [places[name] for name in formula.takes]
-    operands += [f"&{places[name]}" for name in formula.gives]
-    call = f"EACH {formula.tree.name}({', '.join(operands)});"
-    return f"CLONES void each_{formula.name}(const double *const *in, ROW *row)\n{{\n    {call}\n}}"
+    operands = [f"in[AT_{n}][i]" if n in COLUMNS else f"row[AT_{n}][i]" for n in formula.takes]
+    operands += [f"&row[AT_{name}][i]" for name in formula.gives]
+    head = f"CLONES void each_{formula.name}(const double *const *in, ROW *row)"
+    return f"{head}\n{{\n    EACH {formula.tree.name}({', '.join(operands)});\n}}"
 
 
 def header() -> str:
     """Return the text of ``formulas.h``: constants, functions, loops and the table of loops."""
-    numbers = {"PIVOT": PIVOT, "COLUMNS": len(COLUMNS), "ROWS": len(ROWS), "AT_MU": ROWS["MU"]}
     constants = [line for line in SOURCE.body if isinstance(line, ast.Assign)]
+    rows = ", ".join(f"AT_{name}" for name in ROWS)
     bits = " ".join(f"double {bit.name};" for bit in Status)
     values = ", ".join(f"{bit:d}" for bit in Status)
     table = ", ".join(f"each_{name}" for name in COMPILED)
     parts = [
-        f'#define FORMULAS "{digest()}"',
-        *(f"#define {name} ({number})" for name, number in numbers.items()),
+        f"#define PIVOT ({PIVOT})",
+        f"enum {{ {rows}, ROWS, COLUMNS = {len(COLUMNS)} }};",
         *(f"#define {ast.unparse(x.targets[0])} ({ast.unparse(x.value)})" for x in constants),
         f"static const struct {{{bits}}} Status = {{{values}}};",
         *map(function_text, FUNCTIONS.values()),
         *map(loop_text, COMPILED.values()),
         f"static void (*const loops[])(const double *const *, ROW *) = {{{table}}};",
     ]
-    return "/* printed by translate.py */\n\n" + "\n\n".join(parts) + "\n"
+    return "\n\n".join(parts) + "\n"
 
 
 def digest() -> str:
-    """Return a digest of the functions: a library that has it was built from these."""
-    flow = [(formula.takes, formula.gives) for formula in COMPILED.values()]
-    text = ast.unparse(SOURCE) + str([PIVOT, *Status, *COLUMNS, *flow])
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    """Return a digest of the header: a library that has it was built from these formulas."""
+    return hashlib.sha256(header().encode()).hexdigest()[:16]
 
 
 if __name__ == "__main__":
-    print(header(), end="")
+    print(f'/* printed by translate.py */\n\n#define FORMULAS "{digest()}"\n\n{header()}', end="")
