@@ -353,6 +353,12 @@ def test_a_row_lost_or_twice_is_named(start: str) -> None:
     assert single(with_row(start, row(start), other)).verdict is Verdict.DIFFERS
 
 
+def test_a_prompt_without_its_reply_is_not_identical() -> None:
+    verification = single(PAGE.replace("?14.52,25.15,0", "?"))
+    assert verification.verdict is Verdict.AS_READ
+    assert [(f.kind, f.name) for f in verification.findings] == [(Kind.LOST, "REPLY_B")]
+
+
 @pytest.mark.parametrize(
     ("start", "note", "verdict"),
     [

@@ -174,14 +174,15 @@ class Comparison:
         self.reading, self.fields, self.scene = reading, fields, scene
         self.places = reading.places()
         self.ending = ending.replace(" ", "")
-        rows = printed_rows({**fields, **dict.fromkeys(REPLIES, "")})
+        rows = {*printed_rows({**fields, **dict.fromkeys(REPLIES, "")})}
+        self.read_rows = {CELLS[j].row for j in reading.chars} & rows
         self.words = [
             word
             for word in WORD_CELLS
-            if (cell := CELLS[word[0]]).row in rows
+            if (cell := CELLS[word[0]]).row in self.read_rows
             and (cell.name in fields or cell.name not in NAMES)
         ]
-        lost = {*rows} - {CELLS[j].row for j in reading.chars} - {ANGLE_ROW}
+        lost = rows - self.read_rows - {ANGLE_ROW}
         for pair in ({*PROMPTS}, {*ASTERISKS}):  # both may be absent
             lost -= pair if pair <= lost else set()
         self.lost_rows = lost
@@ -242,11 +243,10 @@ class Comparison:
         if not self.ending:  # an error leaves the label of the number that it met
             due = {j for word in self.words for j in word}
             foreign += [[chars[j]] for j in sorted(chars.keys() - due)]
-        read_rows = {CELLS[j].row for j in chars}
         for word in self.words:
             cell, glyphs = word[0], [chars[j] for j in word if j in chars]
             printed = "".join(CELLS[j].char for j in word)
-            if chars_of(glyphs) != printed and CELLS[cell].row in read_rows:
+            if chars_of(glyphs) != printed:
                 kind = Kind.MISREAD if glyphs else Kind.LOST
                 for run in [run for run in foreign if _touches(run, glyphs)]:
                     glyphs = sorted([*glyphs, *run], key=lambda glyph: glyph.offset)
@@ -282,9 +282,12 @@ class Comparison:
         }
 
     def _reply_findings(self) -> Iterator[Finding]:
-        """Yield the replies that are not the scene's numbers."""
+        """Yield the replies that are not the scene's numbers, and those that prompts lack."""
         for reply, reply_text in self.typed_replies().items():
-            if not (slot := self.reading.slots.get(reply)):
+            slot = self.reading.slots.get(reply)
+            if not slot:
+                if ROW_OF[reply] in self.read_rows:
+                    yield self.finding(Kind.LOST, reply, [], reply_text, SLOT_CELLS[reply])
                 continue
             texts = [self.reading.replies.get(name, "") for name in REPLIES[reply]]
             is_same = all(map(is_same_value, texts, reply_text.split(",")))
