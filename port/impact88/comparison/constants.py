@@ -1,14 +1,13 @@
 """Fit a constant that has a wrong value: each row gives its own, and the rows must agree."""
 
 import ast
-from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .conditions import roundest
 from .evaluation import FITTED, Alternatives, Edit, Floats, Program, evaluate
-from .mutants import sites, slot_name
+from .mutants import entries, sites, slot_name
 from .numbers import spread
 from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
 
@@ -22,7 +21,7 @@ MIN_ROWS = 2  # that give a constant
 MAX_SPREAD = 1e-2  # of the constants that the rows give, relative; the digits then decide
 EXACT_SPREAD = 1e-9  # up to which the constant has all its digits
 SHORT_TOLERANCE = 1e-12  # relative distance at which a constant has nine digits or fewer
-KNOWN_TOLERANCE = 4e-7  # relative distance at which a constant is a known one; 3.14159 is no 1
+KNOWN_TOLERANCE = 4e-7  # of a known ratio's distance from 1: a constant as close is that ratio
 RANK = 5  # after the edits without a constant
 RANK_KNOWN = 1
 GROUPS = {
@@ -30,33 +29,7 @@ GROUPS = {
     ">": "VAX,VAY,VBX,VBY,WAF,WBF VAX,VAY,VBX,VBY VAX,VAY VBX,VBY WAF,WBF KI,KF DVA,DVB PN,PT",
 }
 """Columns read, and results shown, that share a constant."""
-KNOWN = {
-    "1.467 for 22/15": 1.467 * 15 / 22,
-    "3.14 for pi": 3.14 / pi,
-    "22/7 for pi": 22 / 7 / pi,
-    "3.1416 for pi": 3.1416 / pi,
-    "3.14159 for pi": 3.14159 / pi,
-    "57.3 for 180/pi": 57.3 * pi / 180,
-    "0.01745 for pi/180": 0.01745 * 180 / pi,
-    "32.2 for 32.174": 32.2 / 32.174,
-    "9.81 for 9.80665": 9.81 / 9.80665,
-    "ft/s for mph": 22 / 15,
-    "ft/s for km/h": 1000 / 3600 / 0.3048,
-    "ft/s for knots": 1852 / 3600 / 0.3048,
-    "m/s for ft/s": 0.3048,
-    "km/h for m/s": 3.6,
-    "mph for m/s": 0.44704,
-    "kg for lb": 0.45359237,
-    "kg for slug": 14.59390294,
-    "weight for mass, in ft and s": 32.174,
-    "weight for mass, 32.2 ft/s²": 32.2,
-    "weight for mass, in m and s": 9.80665,
-    "degrees for radians": 180 / pi,
-    "revolutions per minute for radians per second": 30 / pi,
-    "revolutions per second for radians per second": 1 / (2 * pi),
-    "inches for feet": 12.0,
-    "square inches for square feet": 144.0,
-}
+KNOWN = {meaning: float(evaluate(text, {})) for meaning, text in entries("ratios")}
 """Ratios of constants and units that are mistaken for each other."""
 
 
@@ -163,14 +136,12 @@ def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) 
     """
     shape = (len(next(iter(changes.values()))), sample.wrong.size)
 
-    def misfit(k: Floats) -> Any:
-        names = program.run(changes, list(k))
-        return np.array(
-            [
-                (np.broadcast_to(names[n], shape) - theirs) / sample.limits[n]
-                for n, theirs in sample.theirs.items()
-            ]
-        )
+    def misfit(k: Floats) -> Floats:
+        names = program.run(changes, k)
+        differences = np.empty((len(sample.theirs), *shape))
+        for row, (n, theirs) in zip(differences, sample.theirs.items(), strict=True):
+            row[:] = (names[n] - theirs) / sample.limits[n]
+        return differences
 
     k = np.full(shape, form.neutral)
     new = k + FIRST_STEP
@@ -191,7 +162,7 @@ def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) 
 def _common_constant(values: Floats, form: Form) -> float:
     """Return the constant that half of the rows agree on, with the fewest digits; else NaN.
 
-    Where rounded results leave it open, those between the quartiles agree.
+    Where rounded results leave it open, those from the first quarter to the last agree.
     """
     values = np.sort(values[np.isfinite(values)])
     if values.size < MIN_ROWS:
@@ -204,7 +175,8 @@ def _common_constant(values: Floats, form: Form) -> float:
     if values[start + half] - values[start] <= EXACT_SPREAD * abs(middle):
         short = float(f"{middle:.9g}")
         return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
-    low, high = (float(q) for q in np.quantile(values, (0.25, 0.75)))
+    outer = (values.size - 1) // 4
+    low, high = float(values[outer]), float(values[-1 - outer])
     return roundest(low, high) if high - low <= MAX_SPREAD * abs(middle) else np.nan
 
 
@@ -214,6 +186,7 @@ def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:
         name
         for name, value in KNOWN.items()
         if form is FACTOR
-        and min(abs(constant / value - 1), abs(constant * value - 1)) < KNOWN_TOLERANCE
+        and min(abs(constant / value - 1), abs(constant * value - 1))
+        < KNOWN_TOLERANCE * min(1, abs(value - 1))
     ]
     return f"{constant:.15g}", f" ({meanings[0]})" if meanings else ""

@@ -9,6 +9,7 @@ not give the rows kept out of the search.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -148,6 +149,21 @@ def _trials(name: str, part: str, is_second: bool) -> Iterator[Site | Edit]:
             yield edit
 
 
+def _screened(
+    trials: Sequence[Site | Edit], program: Program, screen: Sample
+) -> Iterator[tuple[Site | Edit, NDArray[np.intp]]]:
+    """Yield trials of the same statements, and the number of rows that each option gives."""
+    made = [trial.values(program) for trial in trials if isinstance(trial, Site)]
+    if len(made) == len(trials):
+        values = {key: np.concatenate([v[key] for v in made], -2) for key in made[0]}
+        sizes = [len(trial.options) for trial in trials]
+        counts = screen.fits(program.propagate(values), sum(sizes)).sum(1)
+        yield from zip(trials, np.split(counts, np.cumsum(sizes)[:-1]), strict=True)
+    else:
+        for trial in trials:
+            yield trial, screen.fits(trial.run(program), len(trial.options)).sum(1)
+
+
 @np.errstate(all="ignore")
 def search(
     sample: Sample, part: str, names: Sequence[str] = NAMES, base: tuple[Edit, ...] = ()
@@ -165,9 +181,9 @@ def search(
         wanted = tuple(sample.theirs) if part == "velocities" else ()
         small, full = (s.program(name, base, wanted) for s in (screen, sample))
         plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
-        for trial in _trials(name, part, bool(base)):
-            if targets.isdisjoint(trial.targets):
-                counts = screen.fits(trial.run(small), len(trial.options)).sum(1)
+        trials = (t for t in _trials(name, part, bool(base)) if targets.isdisjoint(t.targets))
+        for _, batch in groupby(trials, lambda trial: trial.targets):
+            for trial, counts in _screened([*batch], small, screen):
                 options = np.flatnonzero(counts >= need).tolist()
                 values = trial.run(full, options) if options else {}
                 fits = sample.fits(values, len(options)) if options else ()

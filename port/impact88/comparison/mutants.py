@@ -12,9 +12,11 @@ from importlib import resources
 from itertools import combinations
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..names import RESULTS
-from .evaluation import FUNCTIONS, Edit, Program, evaluate, stack, statement_of
-from .spellings import COLUMNS, VELOCITIES, Statement, parse, spelling
+from .evaluation import Edit, Program, evaluate, stack, statement_of
+from .spellings import COLUMNS, VELOCITIES, Statement, names_in, parse, spelling
 
 SLOT = re.compile(r"SLOT\d+")
 RANK_MODEL = 0  # a law or a convention with a name
@@ -23,28 +25,13 @@ RANK_FAR = 4  # any other name
 MIN_SHARED_WORDS = 6  # at the beginning of an edit and of what should be, that are left out
 RANK_TWIN = 3  # the same in several statements
 
-PATTERNS = {
-    "a + b": "a; b; a - b; b - a; a * b",
-    "a - b": "a; b; a + b; b - a; a * b",
-    "a - b * d": "b - a * d",
-    "a * b + d * e": "a * e + d * b",
-    "a * b - d * e": "a * e - d * b",
-    "1 / a + 1 / b": "1 / (a + b)",
-    "a * b": "a; b; a / b; a + b; a - b; b / a",
-    "a / b": "a; b; a * b; b / a; a - b; a + b",
-    "a ** 2": "a; 2 * a; a ** 3; a * abs(a)",
-    "-a": "a",
-    "1 / a": "1 - a; 1 + a",
-    "sin(a)": "cos(a); tan(a); a",
-    "cos(a)": "sin(a); tan(a); 1 - 0 * a",
-    "hypot(a, b)": "a; b; abs(a); abs(b); abs(a) + abs(b); a * a + b * b",
-    "sqrt(a)": "a; a * a",
-    "where(p, a, b)": "a; b; where(p, b, a)",
-    "a > b": "a >= b; a < b; a == b; a != b",
-    "a < b": "a <= b; a > b; a == b; a != b",
-    "a == b": "a != b; a < b; a > b; a <= b; a >= b",
-}
-"""An expression -> what may be written instead; single letters stand for any expression."""
+EXCHANGES = (
+    ("abAB", "baBA", "UX VX UY VY D1 D3 D2 D4"),
+    ("xyXY", "yxYX", "c s D1 D2 D3 D4"),
+    ("nt", "tn", "c s"),
+    ("", "", "VAX UX VAY UY VBX VX VBY VY WAF WA WBF WB"),
+)
+"""A and B, x and y, normal and tangent, after and before: letters of names, and pairs of names."""
 ANY = (
     "-a; 0; 1; 2; 2 * a; a / 2; a * a; abs(a); 1 / a; sqrt(abs(a)); 1 - a; 1 + a; "
     "a * pi / 180; a * 180 / pi"
@@ -53,6 +40,20 @@ LINEAR = "-a; 0; 2 * a; a / 2"
 CONDITIONS = ("point", "pivot", "stick")
 CONSTANTS = "0; 1; 2; 3; 4; -1; 0.5; 10; 100; 90; 360"
 """Alternatives of any expression, of one with unknowns, of a number."""
+
+unparse = cache(ast.unparse)
+
+
+class _Parts(dict[str, Any]):
+    """Values of names, and of expressions in them, each computed once."""
+
+    def __init__(self, scope: Mapping[str, Any]) -> None:
+        super().__init__(scope)
+        self.scope = scope
+
+    def __missing__(self, text: str) -> Any:
+        value = self[text] = evaluate(text, self.scope)
+        return value
 
 
 class Option(NamedTuple):
@@ -66,14 +67,13 @@ class Option(NamedTuple):
     def text(self) -> str:
         """The expression written out."""
         text = re.sub(r"\b[a-z]\b", lambda letter: f"({self.parts[letter[0]]})", self.template)
-        return ast.unparse(parse(text))
+        return unparse(parse(text))
 
-    def value(self, names: dict[str, Any]) -> Any:
-        """Return its value."""
+    def value(self, values: _Parts) -> Any:
+        """Return its value; ``values``: those of its parts."""
         if self.template == "a":
-            return evaluate(self.parts["a"], names)
-        letters = {letter: evaluate(part, names) for letter, part in self.parts.items()}
-        return evaluate(self.template, {**FUNCTIONS, **letters})
+            return values[self.parts["a"]]
+        return evaluate(self.template, {k: values[part] for k, part in self.parts.items()})
 
 
 class Site(NamedTuple):
@@ -88,19 +88,26 @@ class Site(NamedTuple):
     expressions: tuple[str, ...]
     options: tuple[tuple[Option, ...], ...]
 
-    def run(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
-        """Return a program's values, one alternative for each option (that is chosen)."""
+    def values(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
+        """Return the statements' values, one alternative for each option (that is chosen)."""
         rows = self.options if chosen is None else [self.options[k] for k in chosen]
         values = {}
         for target, hole in zip(self.targets, self.holes, strict=True):
             scope = program.scope(target)
+            parts = _Parts(scope)
             slots = {
-                slot: stack([row[place].value(scope) for row in rows], program.size)
+                slot: stack([row[place].value(parts) for row in rows], program.size)
                 for place, slot in enumerate(map(slot_name, range(len(self.expressions))))
                 if slot in hole
             }
-            values[target] = evaluate(hole, {**scope, **slots})
-        return program.propagate(values)
+            unknowns = (len(program.basis) + 1,) if target in program.linear else ()
+            value = evaluate(hole, {**scope, **slots})
+            values[target] = np.broadcast_to(value, (*unknowns, len(rows), program.size))
+        return values
+
+    def run(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
+        """Return a program's values, one alternative for each option (that is chosen)."""
+        return program.propagate(self.values(program, chosen))
 
     def edit(self, place: int) -> Edit:
         """Return an option as an edit."""
@@ -123,45 +130,75 @@ def slot_name(place: int) -> str:
 def _match(pattern: ast.AST, node: ast.AST, parts: dict[str, str]) -> bool:
     """Return whether a node has a pattern's form; note what its letters stand for."""
     if isinstance(pattern, ast.Name) and len(pattern.id) == 1:
-        parts[pattern.id] = ast.unparse(node)
+        parts[pattern.id] = unparse(node)
         return True
     if pattern.__class__ is not node.__class__:
         return False
     if isinstance(pattern, ast.Name | ast.Constant):
-        return ast.unparse(pattern) == ast.unparse(node)
+        return unparse(pattern) == unparse(node)
     pairs = zip(ast.iter_child_nodes(pattern), ast.iter_child_nodes(node), strict=False)
     return all(_match(p, n, parts) for p, n in pairs)
 
 
+def _kind(node: ast.AST) -> tuple[type, type]:
+    """Return the class of an expression, and that of its operator."""
+    return type(node), type(getattr(node, "op", None))
+
+
 @cache
-def _patterns() -> list[tuple[ast.expr, list[str]]]:
-    return [(parse(pattern), options.split("; ")) for pattern, options in PATTERNS.items()]
+def _patterns() -> dict[tuple[type, type], list[tuple[ast.expr, list[str]]]]:
+    """Return the patterns of each kind, with what may be written for them."""
+    patterns: dict[tuple[type, type], list[tuple[ast.expr, list[str]]]] = {}
+    for text, templates in entries("patterns"):
+        pattern = parse(text)
+        patterns.setdefault(_kind(pattern), []).append((pattern, templates.split("; ")))
+    return patterns
 
 
-def near_names(name: str, scope: Sequence[str]) -> list[str]:
+@cache
+def entries(section: str) -> list[tuple[str, ...]]:
+    """Return the entries of a section of ``models.txt``: their parts."""
+    text = resources.files(__package__).joinpath("models.txt").read_text("utf-8")
+    lines = text.partition(f"\n[{section}]\n")[2].partition("\n[")[0].splitlines()
+    return [tuple(line.split(" | ", 1)) for line in lines]
+
+
+@cache
+def exchanges(names: tuple[str, ...]) -> list[dict[str, str]]:
+    """Return the names that stand for the same of the other body, along the other axis ..."""
+    twins = []
+    for letters, others, text in EXCHANGES:
+        table = str.maketrans(letters, others)
+        words = text.split()
+        pairs = {n: n.translate(table) for n in names}
+        pairs |= dict(zip(words, (words[k ^ 1] for k in range(len(words))), strict=True))
+        twins.append({n: twin for n, twin in pairs.items() if n != twin and {n, twin} <= {*names}})
+    return twins
+
+
+def near_names(name: str, scope: tuple[str, ...]) -> list[str]:
     """Return the names that differ in one letter, in capitals, or as before and after do."""
-    pairs = {"VAX": "UX", "VAY": "UY", "VBX": "VX", "VBY": "VY", "WAF": "WA", "WBF": "WB"}
-    pairs |= {after: before for before, after in pairs.items()}
+    twin = exchanges(scope)[-1].get(name)
     return [
         other
         for other in scope
         if other != name
         and (
             other.lower() == name.lower()
-            or other == pairs.get(name)
+            or other == twin
             or (len(other) == len(name) and sum(map(str.__ne__, other, name)) == 1)
         )
     ]
 
 
-def _options(node: ast.expr, names: Sequence[str], unknowns: frozenset[str]) -> list[Option]:
+def _options(node: ast.expr, names: tuple[str, ...], unknowns: frozenset[str]) -> list[Option]:
     """Return what may be written for a node; ``names`` may be written for a name."""
-    text = ast.unparse(node)
+    text = unparse(node)
     itself = {"a": text}
     if isinstance(node, ast.Constant):
         return [Option(number, {}) for number in CONSTANTS.split("; ") if number != text]
     options = []
-    for pattern, templates in _patterns():
+    for pattern, templates in _patterns().get(_kind(node), ()):
         parts: dict[str, str] = {}
         if _match(pattern, node, parts):
             options += [Option(template, parts) for template in templates]
@@ -172,7 +209,11 @@ def _options(node: ast.expr, names: Sequence[str], unknowns: frozenset[str]) -> 
         distant = [n for n in names if n not in similar and n != text]
         options += [Option("a", {"a": name}) for name in similar]
         options += [Option("a", {"a": name}, RANK_FAR) for name in distant]
-    inside = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+    inside = names_in(text)
+    for twins in exchanges(names):
+        if len(inside & twins.keys()) > 1:
+            words = (twins.get(word, word) for word in re.split(r"\b", text))
+            options.append(Option("a", {"a": "".join(words)}, RANK_TWIN))
     general = ANY if inside.isdisjoint(unknowns) else LINEAR
     return options + [Option(template, itself) for template in general.split("; ")]
 
@@ -185,7 +226,7 @@ def _nodes(tree: ast.expr) -> list[ast.expr]:
 
 def _form(node: ast.expr) -> str:
     """Return an expression with all names alike."""
-    return re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", ast.unparse(node))
+    return re.sub(r"\b[A-Za-z]\w*\b(?!\()", "x", unparse(node))
 
 
 def _site(
@@ -200,21 +241,31 @@ def _site(
     for target, node, slot in sorted(members, key=lambda member: -member[1].col_offset):
         text = holes[target]
         holes[target] = f"{text[: node.col_offset]}{slot_name(slot)}{text[node.end_col_offset :]}"
-    texts = {slot: ast.unparse(node) for _, node, slot in members}
+    texts = {slot: unparse(node) for _, node, slot in members}
     return Site(tuple(holes), tuple(holes.values()), tuple(texts.values()), tuple(options))
 
 
 def _single_sites(
-    statement: Statement, names: Sequence[str], unknowns: frozenset[str]
+    statement: Statement, names: tuple[str, ...], unknowns: frozenset[str]
 ) -> Iterator[Site]:
     """Yield the sites of one statement: each expression, and equal ones together."""
     groups: dict[str, list[tuple[Statement, ast.expr]]] = {}
     for node in _nodes(parse(statement.text)):
-        groups.setdefault(ast.unparse(node), []).append((statement, node))
+        groups.setdefault(unparse(node), []).append((statement, node))
     for equal in groups.values():
         options = [(option,) for option in _options(equal[0][1], names, unknowns)]
         for group in [*([pair] for pair in equal), *([equal] if len(equal) > 1 else [])]:
             yield _site([statement], group, [0] * len(group), options)
+    twins = exchanges(names)
+    for first, second in combinations(sorted(groups.keys() & {*names}), 2):
+        if any(twin.get(first) == second for twin in twins):
+            rows = [
+                (Option("a", {"a": twin[first]}), Option("a", {"a": twin[second]}))
+                for twin in twins
+                if first in twin and second in twin
+            ]
+            slots = [0] * len(groups[first]) + [1] * len(groups[second])
+            yield _site([statement], groups[first] + groups[second], slots, rows)
 
 
 def _groups(statements: Sequence[Statement]) -> list[tuple[tuple[Statement, ast.expr], ...]]:
@@ -227,7 +278,7 @@ def _groups(statements: Sequence[Statement]) -> list[tuple[tuple[Statement, ast.
         if not isinstance(node, ast.Name | ast.Constant):
             forms.setdefault(_form(node), []).append((statement, node))
     groups = [g for members in forms.values() for g in subsets(members)]
-    return [g for g in groups if len({ast.unparse(node) for _, node in g}) == len(g)]
+    return [g for g in groups if len({unparse(node) for _, node in g}) == len(g)]
 
 
 def subsets(members: Sequence[Any]) -> list[tuple[Any, ...]]:
@@ -246,24 +297,11 @@ def _twin_sites(
         rows = [_options(node, (), unknowns) for _, node in group]
         if len({tuple(option.template for option in row) for row in rows}) == 1:
             options = list(zip(*rows, strict=True))
-            texts = tuple(ast.unparse(node) for _, node in group)
+            texts = tuple(unparse(node) for _, node in group)
             for pair in pairs if texts in pairs else ():
                 if pair != texts:
                     options.append(tuple(Option("a", {"a": name}) for name in pair))
             yield _site(statements, group, range(len(group)), options)
-
-
-def _pairs(names: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the names that are parts of a vector, or the same of A and B."""
-    pairs = []
-    for name in names:
-        for first, second in ("xy", "nt", "ab", "XY", "AB"):
-            for place in [k for k, letter in enumerate(name) if letter == first]:
-                twin = name[:place] + second + name[place + 1 :]
-                if twin in names:
-                    pairs.append((name, twin))
-    pairs += [("UX", "VX"), ("UY", "VY"), ("c", "s")]
-    return list(dict.fromkeys(pairs + [(second, first) for first, second in pairs]))
 
 
 @cache
@@ -280,12 +318,13 @@ def sites(name: str, part: str) -> tuple[Site, ...]:
         linear = statement.reads & unknowns
         usable = [n for n in names if n not in CONDITIONS]
         usable += [n for n in text.unknowns if linear]
-        all_sites += _single_sites(statement, list(dict.fromkeys(usable)), unknowns)
+        all_sites += _single_sites(statement, tuple(dict.fromkeys(usable)), unknowns)
         all_sites += _twin_sites([statement], (), unknowns)
         forms.setdefault(_form(parse(statement.text)), []).append(statement)
         if not linear:
             names.append(statement.target)
-    pairs = _pairs(names)
+    pairs = [pair for twins in exchanges(tuple(names)) for pair in twins.items()]
+    pairs = list(dict.fromkeys(pairs))
     for members in forms.values():
         for group in subsets(members):
             all_sites += _twin_sites(group, pairs, unknowns)
@@ -295,49 +334,23 @@ def sites(name: str, part: str) -> tuple[Site, ...]:
 @cache
 def models() -> tuple[Edit, ...]:
     """Return the laws and conventions of ``models.txt``, and those of single columns."""
-    edits, section = [], ""
-    text = resources.files(__package__).joinpath("models.txt").read_text("utf-8")
-    for line in text.splitlines():
-        if line.startswith("["):
-            section = line
-        elif " | " in line and not line.startswith("#"):
-            says, assignments = line.split(" | ", 1)
+    edits = []
+    for section, sides in (("laws", ("", "> ")), ("columns", ("< ", "> "))):
+        for says, assignments in entries(section):
             changes = {}
-            for side, part in zip("<>", (assignments + ";;").split(";;"), strict=False):
+            for side, part in zip(sides, (assignments + ";;").split(";;"), strict=False):
                 for assignment in filter(str.strip, part.split(";")):
                     target, expression = assignment.strip().split(" = ", 1)
-                    changes[target if section == "[laws]" else f"{side} {target}"] = expression
+                    changes[side + target] = expression
             edits.append(Edit(says, changes, RANK_MODEL))
-    results = [name for name in RESULTS if name not in ("COND", "STATUS")]
+    results = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
     return (*edits, *_columns("<", COLUMNS[:-1], "as read"), *_columns(">", results, "as shown"))
 
 
-_FORMS = {
-    "{} with the opposite sign": "-@",
-    "{} left out (0)": "0 * @",
-    "{} squared": "@ * abs(@)",
-    "the square root of {}": "sign(@) * sqrt(abs(@))",
-    "{} without its sign": "abs(@)",
-    "1 - {0} in place of {0}": "1 - @",
-    "{} cut to a whole number": "trunc(@)",
-    "{} rounded to a whole number": "rint(@)",
-    "{} in single precision": "single(@)",
-    "negative {} taken as 0": "maximum(@, 0)",
-    "positive {} taken as 0": "minimum(@, 0)",
-    "{} limited to 1": "maximum(minimum(@, 1), -1)",
-    "{} always 1": "0 * @ + 1",
-    "1 / {0} in place of {0}": "1 / @",
-    "the remainder of {} by 90": "fmod(@, 90)",
-    "the remainder of {} by 180": "fmod(@, 180)",
-    "{} in radians": "@ * pi / 180",
-    "{} in degrees": "@ * 180 / pi",
-}
-
-
-def _columns(side: str, names: Sequence[str], how: str) -> Iterator[Edit]:
+def _columns(side: str, names: tuple[str, ...], how: str) -> Iterator[Edit]:
     """Yield the conventions of each column by itself, and of two exchanged."""
     for name in names:
-        for says, form in _FORMS.items():
+        for says, form in entries("forms"):
             changes = {f"{side} {name}": form.replace("@", name)}
             yield Edit(f"{says.format(name)}, {how}", changes, RANK_MODEL + 1)
         similar = near_names(name, names)

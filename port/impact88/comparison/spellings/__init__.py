@@ -13,7 +13,7 @@ from typing import NamedTuple
 from ...mechanics.plan import GIVERS
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE
 
-NAMES = ("impulses", "frame", "equations", "bodies", "trial", "ratio")
+NAMES = ("impulses", "frame", "closed", "equations", "bodies", "trial", "ratio")
 COLUMNS = tuple(SCENE)
 VELOCITIES = tuple(FINAL_VELOCITIES)
 
