@@ -1,6 +1,5 @@
 """Fit a constant that has a wrong value: each row gives its own, and the rows must agree."""
 
-import ast
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -9,7 +8,7 @@ from .conditions import roundest
 from .evaluation import FITTED, Alternatives, Edit, Floats, Program, evaluate
 from .mutants import entries, sites, slot_name
 from .numbers import spread
-from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
+from .spellings import COLUMNS, NAMES, VELOCITIES
 
 if TYPE_CHECKING:
     from .diagnosis import Sample
@@ -61,7 +60,7 @@ LIMITED = ("E", "MU", "EM")
 def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
     """Return the edits of a part of a spelling by one constant that the rows agree on."""
     subset = sample.rows(spread(np.flatnonzero(sample.wrong), ROWS))
-    program = subset.program(name)
+    program = Program(name, subset.columns)
     edits = _statement_constants(subset, program, part)
     return edits + _column_constants(subset, program) if name == NAMES[0] else edits
 
@@ -69,8 +68,7 @@ def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
 def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
     """Return the edits of columns as they are read, or results as they are shown."""
     edits = []
-    for side, names in (("<", COLUMNS[:-1]), (">", (*sample.theirs,))):
-        verb = "read" if side == "<" else "shown"
+    for side, verb, names in (("<", "read", COLUMNS[:-1]), (">", "shown", (*sample.theirs,))):
         groups = [group.split(",") for group in GROUPS[side].split()]
         groups = [g for g in groups if set(g) <= set(names)] + [[name] for name in names]
         for group in groups:
@@ -99,12 +97,10 @@ def _known_factor(sample: "Sample", program: Program, changes: Alternatives) -> 
 
 def _statement_constants(sample: "Sample", program: Program, part: str) -> list[Edit]:
     """Return the edits of an expression in a statement by a constant factor or term."""
-    text = spelling(program.name)
-    reading = {s.target for s in text.statements[: text.own]} if program.name != NAMES[0] else set()
     places: dict[str, dict[str, str]] = {}
     for site in sites(program.name, part):
         (target, *twins), (expression, *others) = site.targets, site.expressions
-        if not (twins or others or target in reading or expression in VELOCITIES):
+        if not (twins or others or expression in VELOCITIES):
             value = evaluate(expression, program.scope(target))
             if np.ndim(value) < 2 and np.size(value) > 1 and value.dtype == float:
                 places.setdefault(target, {})[site.holes[0]] = expression
@@ -112,18 +108,16 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     for target, expressions in places.items():
         for form in (FACTOR, TERM, CONSTANT):
             texts = [
-                hole.replace(slot_name(0), f"({form.text.format(expression, FITTED)})")
+                hole.replace(slot_name(0), f"({form.text.format(expression, '{0}')})")
                 for hole, expression in expressions.items()
             ]
-            constants = _fit(sample, program, {target: texts}, form)
-            for (hole, expression), constant in zip(expressions.items(), constants, strict=True):
+            fitted = [text.format(FITTED) for text in texts]
+            constants = _fit(sample, program, {target: fitted}, form)
+            for text, constant in zip(texts, constants, strict=True):
                 if np.isfinite(constant):
-                    number, meaning = _digits_and_meaning(constant, form)
-                    new_text = form.text.format(expression, number)
-                    changes = {target: hole.replace(slot_name(0), f"({new_text})")}
-                    rank = RANK_KNOWN if meaning else RANK
-                    new_text = ast.unparse(parse(new_text)) + meaning
-                    edits.append(Edit("", changes, rank, (new_text,), (expression,)))
+                    number, note = _digits_and_meaning(constant, form)
+                    rank = RANK_KNOWN if note else RANK
+                    edits.append(Edit("", {target: text.format(number)}, rank, note))
     return edits
 
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .spellings import COLUMNS, Statement, names_in, spelling
+from .spellings import COLUMNS, VELOCITIES, Statement, names_in, spelling
 
 Floats = NDArray[np.float64]
 Values = dict[str, Any]
@@ -20,8 +20,6 @@ Alternatives = Mapping[str, Sequence[str]]
 """A place in a program, as an edit names it -> expressions that are tried there."""
 FITTED = "fitted_constant"
 """The name of a constant that is fitted, in expressions that are tried."""
-SOLUTION = Statement("", "", "", frozenset())
-"""The place in a plan where equations are solved."""
 
 
 def round_to_single(x: Any) -> Any:
@@ -44,33 +42,14 @@ class Edit(NamedTuple):
     """A mistake or a convention.
 
     ``changes`` maps a statement's target to the expression in its place; a column as it is read is
-    "< UX", a result as it is shown "> VAX". ``says`` describes it; an edit of a statement is
-    ``written`` in place of ``expected`` there. The lower the ``rank``, the likelier.
+    "< UX", a result as it is shown "> VAX". ``says`` describes it, if it has a name; ``note``: what
+    a constant is known as. The lower the ``rank``, the likelier.
     """
 
     says: str
     changes: Mapping[str, str]
     rank: int = 0
-    written: tuple[str, ...] = ()
-    expected: tuple[str, ...] = ()
-
-    @property
-    def targets(self) -> tuple[str, ...]:
-        """What is changed."""
-        return tuple(self.changes)
-
-    @property
-    def options(self) -> "tuple[Edit]":
-        """The edit itself: a site has several."""
-        return (self,)
-
-    def run(self, program: "Program", _: Sequence[int] = (0,)) -> Values:
-        """Return a program's values with the edit."""
-        return program.run({key: [text] for key, text in self.changes.items()})
-
-    def edit(self, place: int) -> "Edit":
-        """Return an option: the edit itself."""
-        return self.options[place]
+    note: str = ""
 
 
 @cache
@@ -105,11 +84,9 @@ class Program:
     name : str
         The spelling.
     columns : mapping of str to ndarray
-        The scenes, and the number of the row.
+        The scenes, the number of the row, and final velocities to take instead of computing them.
     edits : sequence of Edit
         Edits, the later on top of the earlier.
-    velocities : mapping of str to ndarray, optional
-        Final velocities to take instead of computing them.
     wanted : sequence of str, optional
         The results that are computed; all by default.
     """
@@ -119,13 +96,12 @@ class Program:
         name: str,
         columns: Mapping[str, Floats],
         edits: Sequence[Edit] = (),
-        velocities: Mapping[str, Floats] | None = None,
         wanted: Sequence[str] = (),
     ) -> None:
         self.name = name
         self.spelling = spelling(name)
         self.size = int(np.size(columns["UX"]))
-        self.typed: Values = {**columns}
+        self.columns = columns
         self.statements = list(self.spelling.statements)
         if wanted:
             first = self.spelling.results
@@ -141,16 +117,15 @@ class Program:
             else s
             for s in self.statements
         ]
-        columns = {n[2:]: evaluate(t, self.typed) for n, t in written.items() if n[0] == "<"}
+        read = {n[2:]: evaluate(t, columns) for n, t in written.items() if n[0] == "<"}
         self.shown = [{key: [text] for key, text in edit.changes.items()} for edit in edits]
         equations = self.spelling.equations
         self.linear = frozenset({*equations, "slip", "hold"}) if equations else frozenset()
         self._first = 0
-        self._last = equations[-1] if equations else ""
         self._plans: dict[tuple[frozenset[str], ...], list[Statement]] = {}
         texts = {statement.target: [statement.text] for statement in self.statements}
-        self.computed = self._advance({**self.typed, **columns}, COLUMNS, texts)
-        if velocities:
+        self.computed = self._advance({**columns, **read}, COLUMNS, texts)
+        if velocities := {n: columns[n] for n in VELOCITIES if n in columns}:
             self._first = self.spelling.results
             self._plans.clear()
             self.computed = self._advance({**self.computed, **velocities}, velocities, {})
@@ -184,14 +159,16 @@ class Program:
         each of them.
         """
         columns = {
-            key[2:]: self._values(texts, self.typed, constants)
+            key[2:]: self._values(texts, self.columns, constants)
             for key, texts in changes.items()
             if key[0] == "<"
         }
         names = self._advance({**self.computed, **columns}, columns, changes, constants)
         return self._show(names, changes, constants)
 
-    def _values(self, texts: Sequence[str], scope: Values, constants: Iterable[Any]) -> Any:
+    def _values(
+        self, texts: Sequence[str], scope: Mapping[str, Any], constants: Iterable[Any]
+    ) -> Any:
         """Return the values of alternatives."""
         values = [evaluate(t, {**scope, FITTED: x}) for t, x in zip(texts, constants, strict=True)]
         return values[0] if len(values) == 1 else stack(values, self.size)
@@ -204,10 +181,7 @@ class Program:
             is_stale = target in edited or not dirty.isdisjoint(statement.reads)
             if is_stale and target not in kept:
                 plan.append(statement)
-                dirty.add(target)
-            if target == self._last and not dirty.isdisjoint(self.spelling.equations):
-                plan.append(SOLUTION)
-                dirty.update(self.spelling.unknowns)
+                dirty.update(target.split(", "))
         return plan
 
     def _advance(
@@ -223,7 +197,7 @@ class Program:
             self._plans[key] = self._plan(*key)
         for statement in self._plans[key]:
             target = statement.target
-            if statement is SOLUTION:
+            if statement.is_solution:
                 names.update(self._solve([names[name] for name in self.spelling.equations]))
                 continue
             scope = {**names, **self.basis} if target in self.linear else names

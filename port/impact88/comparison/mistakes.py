@@ -9,6 +9,7 @@ from .agreement import LOST_DIGITS
 from .diagnosis import MIN_HELD_OUT, REQUIRED, Candidate, Sample, explain
 from .evaluation import Floats, Program
 from .grading import Table
+from .mutants import describe_names
 from .numbers import spread
 from .rows import mistake_of_table
 from .spellings import COLUMNS, VELOCITIES
@@ -127,7 +128,7 @@ class Diagnosis:
             wrong = np.any([table.misfit[n][rows] for n in self.velocities], 0)
             for n in self.velocities:
                 velocities[n] = np.where(wrong, table.theirs[n][rows], table.ours[n][rows])
-            program = Program("impulses", columns, (), velocities, names)
+            program = Program("impulses", {**columns, **velocities}, wanted=names)
             moves = ({n: x + wrong * self.limits[n][rows]} for n, x in velocities.items())
             effects = program.effects(moves, names)
             limits = {name: limit + effects[name] for name, limit in limits.items()}
@@ -157,12 +158,13 @@ class Diagnosis:
             count += int(candidate.gives(sample).sum())
         names = tuple(n for n in self.names if n in explained and misfit[n].any())
         where = str(candidate.condition or "")
-        return Cause(candidate.text, where, names, count, wrong.size, candidate.alternatives)
+        terms = describe_names(candidate.edits[0], candidate.name)
+        return Cause(candidate.text, where, names, count, wrong.size, candidate.alternatives, terms)
 
 
 def _disagreement(sample: Sample) -> Sample:
     """Return a sample with the rows as wrong in which results do not follow from velocities."""
-    wrong = ~sample.fits(sample.program("impulses").base)[0]
+    wrong = ~sample.given_by("impulses")
     if wrong.mean() <= 1 - REQUIRED:
         wrong[:] = False
     return sample._replace(wrong=wrong)

@@ -22,14 +22,13 @@ SLOT = re.compile(r"SLOT\d+")
 RANK_MODEL = 0  # a law or a convention with a name
 RANK_NEAR = 2  # an operator, a sign, a name of one other letter
 RANK_FAR = 4  # any other name
-MIN_SHARED_WORDS = 6  # at the beginning of an edit and of what should be, that are left out
 RANK_TWIN = 3  # the same in several statements
 
 EXCHANGES = (
-    ("abAB", "baBA", "UX VX UY VY D1 D3 D2 D4"),
-    ("xyXY", "yxYX", "c s D1 D2 D3 D4"),
-    ("nt", "tn", "c s"),
-    ("", "", "VAX UX VAY UY VBX VX VBY VY WAF WA WBF WB"),
+    ("abAB", "baBA", "UX:VX VX:UX UY:VY VY:UY D1:D3 D3:D1 D2:D4 D4:D2"),
+    ("xyXY", "yxYX", "c:s s:c D1:D2 D2:D1 D3:D4 D4:D3"),
+    ("nt", "tn", "c:s s:c"),
+    ("", "", "UX:VAX VAX:UX UY:VAY VAY:UY VX:VBX VBX:VX VY:VBY VBY:VY WA:WAF WAF:WA WB:WBF WBF:WB"),
 )
 """A and B, x and y, normal and tangent, after and before: letters of names, and pairs of names."""
 ANY = (
@@ -37,6 +36,7 @@ ANY = (
     "a * pi / 180; a * 180 / pi"
 )
 LINEAR = "-a; 0; 2 * a; a / 2"
+WITH_READING = ("impulses", "trial")  # spellings in which a mistake of the reading is looked for
 CONDITIONS = ("point", "pivot", "stick")
 CONSTANTS = "0; 1; 2; 3; 4; -1; 0.5; 10; 100; 90; 360"
 """Alternatives of any expression, of one with unknowns, of a number."""
@@ -88,38 +88,32 @@ class Site(NamedTuple):
     expressions: tuple[str, ...]
     options: tuple[tuple[Option, ...], ...]
 
-    def values(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
-        """Return the statements' values, one alternative for each option (that is chosen)."""
-        rows = self.options if chosen is None else [self.options[k] for k in chosen]
+    def values(self, program: Program) -> dict[str, Any]:
+        """Return the statements' values, one alternative for each option."""
         values = {}
         for target, hole in zip(self.targets, self.holes, strict=True):
             scope = program.scope(target)
             parts = _Parts(scope)
             slots = {
-                slot: stack([row[place].value(parts) for row in rows], program.size)
+                slot: stack([row[place].value(parts) for row in self.options], program.size)
                 for place, slot in enumerate(map(slot_name, range(len(self.expressions))))
                 if slot in hole
             }
             unknowns = (len(program.basis) + 1,) if target in program.linear else ()
             value = evaluate(hole, {**scope, **slots})
-            values[target] = np.broadcast_to(value, (*unknowns, len(rows), program.size))
+            values[target] = np.broadcast_to(value, (*unknowns, len(self.options), program.size))
         return values
-
-    def run(self, program: Program, chosen: Sequence[int] | None = None) -> dict[str, Any]:
-        """Return a program's values, one alternative for each option (that is chosen)."""
-        return program.propagate(self.values(program, chosen))
 
     def edit(self, place: int) -> Edit:
         """Return an option as an edit."""
         options = self.options[place]
-        texts = [option.text for option in options]
-        slots = {slot_name(k): f"({text})" for k, text in enumerate(texts)}
+        slots = {slot_name(k): f"({option.text})" for k, option in enumerate(options)}
         changes = {
             target: SLOT.sub(lambda match: slots[match[0]], hole)
             for target, hole in zip(self.targets, self.holes, strict=True)
         }
         rank = max(option.rank for option in options) + (RANK_TWIN if len(options) > 1 else 0)
-        return Edit("", changes, rank, tuple(texts), self.expressions)
+        return Edit("", changes, rank)
 
 
 def slot_name(place: int) -> str:
@@ -146,13 +140,10 @@ def _kind(node: ast.AST) -> tuple[type, type]:
 
 
 @cache
-def _patterns() -> dict[tuple[type, type], list[tuple[ast.expr, list[str]]]]:
-    """Return the patterns of each kind, with what may be written for them."""
-    patterns: dict[tuple[type, type], list[tuple[ast.expr, list[str]]]] = {}
-    for text, templates in entries("patterns"):
-        pattern = parse(text)
-        patterns.setdefault(_kind(pattern), []).append((pattern, templates.split("; ")))
-    return patterns
+def _patterns() -> list[tuple[tuple[type, type], ast.expr, list[str]]]:
+    """Return the patterns: kind, expression, and what may be written for it."""
+    pairs = entries("patterns")
+    return [(_kind(parse(text)), parse(text), written.split("; ")) for text, written in pairs]
 
 
 @cache
@@ -169,9 +160,8 @@ def exchanges(names: tuple[str, ...]) -> list[dict[str, str]]:
     twins = []
     for letters, others, text in EXCHANGES:
         table = str.maketrans(letters, others)
-        words = text.split()
         pairs = {n: n.translate(table) for n in names}
-        pairs |= dict(zip(words, (words[k ^ 1] for k in range(len(words))), strict=True))
+        pairs |= dict(pair.split(":") for pair in text.split())
         twins.append({n: twin for n, twin in pairs.items() if n != twin and {n, twin} <= {*names}})
     return twins
 
@@ -198,17 +188,18 @@ def _options(node: ast.expr, names: tuple[str, ...], unknowns: frozenset[str]) -
     if isinstance(node, ast.Constant):
         return [Option(number, {}) for number in CONSTANTS.split("; ") if number != text]
     options = []
-    for pattern, templates in _patterns().get(_kind(node), ()):
+    node_kind = _kind(node)
+    for kind, pattern, templates in _patterns():
         parts: dict[str, str] = {}
-        if _match(pattern, node, parts):
+        if kind == node_kind and _match(pattern, node, parts):
             options += [Option(template, parts) for template in templates]
     if isinstance(node, ast.Compare):
-        return [*options, Option("a != a", itself), Option("a == a", itself)]
+        return options
     if isinstance(node, ast.Name) and text != "pi":
         similar = near_names(text, names)
-        distant = [n for n in names if n not in similar and n != text]
-        options += [Option("a", {"a": name}) for name in similar]
-        options += [Option("a", {"a": name}, RANK_FAR) for name in distant]
+        for name in [n for n in names if n != text]:
+            rank = RANK_NEAR if name in similar else RANK_FAR
+            options.append(Option("a", {"a": name}, rank))
     inside = names_in(text)
     for twins in exchanges(names):
         if len(inside & twins.keys()) > 1:
@@ -256,29 +247,29 @@ def _single_sites(
         options = [(option,) for option in _options(equal[0][1], names, unknowns)]
         for group in [*([pair] for pair in equal), *([equal] if len(equal) > 1 else [])]:
             yield _site([statement], group, [0] * len(group), options)
-    twins = exchanges(names)
-    for first, second in combinations(sorted(groups.keys() & {*names}), 2):
-        if any(twin.get(first) == second for twin in twins):
-            rows = [
-                (Option("a", {"a": twin[first]}), Option("a", {"a": twin[second]}))
-                for twin in twins
-                if first in twin and second in twin
-            ]
-            slots = [0] * len(groups[first]) + [1] * len(groups[second])
-            yield _site([statement], groups[first] + groups[second], slots, rows)
 
 
-def _groups(statements: Sequence[Statement]) -> list[tuple[tuple[Statement, ast.expr], ...]]:
-    """Return expressions of one form: at one place of statements, or in one statement."""
+def _groups(
+    statements: Sequence[Statement], names: tuple[str, ...]
+) -> list[tuple[tuple[Statement, ast.expr], ...]]:
+    """Return expressions of one form: at one place of statements, or in one statement.
+
+    Names of one statement are those that stand for the same of A and B, x and y ...
+    """
+    twins = {pair for twin in exchanges(names) for pair in twin.items()}
     trees = [[(s, node) for node in _nodes(parse(s.text))] for s in statements]
     if len(statements) > 1:
         return list(zip(*trees, strict=True))
     forms: dict[str, list[tuple[Statement, ast.expr]]] = {}
     for statement, node in trees[0]:
-        if not isinstance(node, ast.Name | ast.Constant):
-            forms.setdefault(_form(node), []).append((statement, node))
+        forms.setdefault(_form(node), []).append((statement, node))
     groups = [g for members in forms.values() for g in subsets(members)]
-    return [g for g in groups if len({unparse(node) for _, node in g}) == len(g)]
+    texts = [tuple(unparse(node) for _, node in g) for g in groups]
+    return [
+        g
+        for g, text in zip(groups, texts, strict=True)
+        if text in twins or (len({*text}) == len(text) and not text[0].isalnum())
+    ]
 
 
 def subsets(members: Sequence[Any]) -> list[tuple[Any, ...]]:
@@ -287,47 +278,46 @@ def subsets(members: Sequence[Any]) -> list[tuple[Any, ...]]:
 
 
 def _twin_sites(
-    statements: Sequence[Statement], pairs: Sequence[tuple[str, str]], unknowns: frozenset[str]
+    statements: Sequence[Statement], names: tuple[str, ...], unknowns: frozenset[str]
 ) -> Iterator[Site]:
-    """Yield the sites with the same mistake in expressions of one form, in one or more statements.
-
-    ``pairs`` of names, such as the parts of a vector, may be written for a pair.
-    """
-    for group in _groups(statements):
+    """Yield the sites with the same mistake in expressions of one form."""
+    for group in _groups(statements, names):
         rows = [_options(node, (), unknowns) for _, node in group]
         if len({tuple(option.template for option in row) for row in rows}) == 1:
             options = list(zip(*rows, strict=True))
-            texts = tuple(unparse(node) for _, node in group)
-            for pair in pairs if texts in pairs else ():
-                if pair != texts:
-                    options.append(tuple(Option("a", {"a": name}) for name in pair))
+            texts = [unparse(node) for _, node in group]
+            for twins in exchanges(names):
+                if {*texts} <= twins.keys():
+                    options.append(tuple(Option("a", {"a": twins[text]}) for text in texts))
             yield _site(statements, group, range(len(group)), options)
 
 
 @cache
 def sites(name: str, part: str) -> tuple[Site, ...]:
-    """Return the sites of a spelling's "velocities" or "results"."""
+    """Return the sites of a spelling's "velocities" or "results"; of the reading in some only."""
     text = spelling(name)
-    first, last = (0, text.results) if part == "velocities" else (text.results, None)
+    start = 0 if name in WITH_READING else text.own
+    first, last = (start, text.results) if part == "velocities" else (text.results, None)
     unknowns = frozenset(text.unknowns) if part == "velocities" else frozenset()
     names = [*COLUMNS, *(s.target for s in text.statements[: first or text.own])]
     names += VELOCITIES if part == "results" else []
     all_sites: list[Site] = []
     forms: dict[str, list[Statement]] = {}
     for statement in text.statements[first:last]:
+        if statement.is_solution:
+            continue
         linear = statement.reads & unknowns
         usable = [n for n in names if n not in CONDITIONS]
         usable += [n for n in text.unknowns if linear]
-        all_sites += _single_sites(statement, tuple(dict.fromkeys(usable)), unknowns)
-        all_sites += _twin_sites([statement], (), unknowns)
+        scope = tuple(dict.fromkeys(usable))
+        all_sites += _single_sites(statement, scope, unknowns)
+        all_sites += _twin_sites([statement], scope, unknowns)
         forms.setdefault(_form(parse(statement.text)), []).append(statement)
         if not linear:
             names.append(statement.target)
-    pairs = [pair for twins in exchanges(tuple(names)) for pair in twins.items()]
-    pairs = list(dict.fromkeys(pairs))
     for members in forms.values():
         for group in subsets(members):
-            all_sites += _twin_sites(group, pairs, unknowns)
+            all_sites += _twin_sites(group, tuple(names), unknowns)
     return tuple(site for site in all_sites if site.options)
 
 
@@ -354,16 +344,13 @@ def _columns(side: str, names: tuple[str, ...], how: str) -> Iterator[Edit]:
             changes = {f"{side} {name}": form.replace("@", name)}
             yield Edit(f"{says.format(name)}, {how}", changes, RANK_MODEL + 1)
         similar = near_names(name, names)
-        for other in similar:
+        for other in [n for n in names if n != name]:
             says = f"{other} in place of {name}, {how}"
-            yield Edit(says, {f"{side} {name}": other}, RANK_MODEL + 1)
-            if other > name:
+            rank = RANK_MODEL + 1 if other in similar else RANK_FAR
+            yield Edit(says, {f"{side} {name}": other}, rank)
+            if other > name and other in similar:
                 swap = {f"{side} {name}": other, f"{side} {other}": name}
-                yield Edit(f"{name} and {other} exchanged, {how}", swap, RANK_MODEL + 1)
-        for other in names:
-            if other not in similar and other != name:
-                says = f"{other} in place of {name}, {how}"
-                yield Edit(says, {f"{side} {name}": other}, RANK_FAR)
+                yield Edit(f"{name} and {other} exchanged, {how}", swap, rank)
 
 
 def describe(edit: Edit, name: str) -> str:
@@ -372,18 +359,38 @@ def describe(edit: Edit, name: str) -> str:
         return edit.says
     target, *twins = edit.changes
     statement = statement_of(name, target)
-    pairs = dict.fromkeys(zip(edit.written, edit.expected, strict=True))
-    parts = "; ".join("{}, should be {}".format(*_shorten(*pair)) for pair in list(pairs)[:2])
-    sentence = f"{statement.subject}: {parts}, in {target} = {statement.text}"
+    new, old = difference(edit, name)
+    sentence = f"{statement.subject}: {new}{edit.note}, should be {old}"
+    sentence += f", in {target} = {statement.text}"
     return f"{sentence} (likewise in {', '.join(twins)})" if twins else sentence
 
 
-def _shorten(new: str, old: str) -> tuple[str, str]:
-    """Return two texts without the words with which both begin, if those are many."""
-    words, expected = new.split(" "), old.split(" ")
-    count, last = 0, min(len(words), len(expected)) - 1
-    while count < last and words[count] == expected[count]:
-        count += 1
-    if count < MIN_SHARED_WORDS:
-        return new, old
-    return " ".join(["...", *words[count:]]), " ".join(["...", *expected[count:]])
+def describe_names(edit: Edit, name: str) -> str:
+    """Return what the names stand for with which an edit is described."""
+    words = re.findall(r"\w+", "" if edit.says else " ".join(difference(edit, name)))
+    subjects = {s.target: s.subject for s in spelling(name).statements if s.target in words}
+    return "; ".join(map(": ".join, subjects.items()))
+
+
+def difference(edit: Edit, name: str) -> tuple[str, str]:
+    """Return the smallest expression that an edit changes, of those that a statement has once.
+
+    As it is written, and as it should be; terms with which both begin are left out.
+    """
+    target = next(iter(edit.changes))
+    whole = parse(statement_of(name, target).text)
+    texts = [unparse(node) for node in _nodes(whole)]
+    new: ast.AST = parse(edit.changes[target])
+    old: ast.AST = whole
+    while type(new) is type(old):
+        pairs = zip(ast.iter_child_nodes(new), ast.iter_child_nodes(old), strict=False)
+        inner = [(n, o) for n, o in pairs if ast.dump(n) != ast.dump(o)]
+        if len(inner) != 1 or texts.count(unparse(inner[0][1])) != 1:
+            break
+        new, old = inner[0]
+    written, expected = unparse(new), unparse(old)
+    left = getattr(old, "left", old)
+    beginning = unparse(left)
+    if isinstance(left, ast.BinOp) and written.startswith(beginning):
+        return f"...{written.removeprefix(beginning)}", f"...{expected.removeprefix(beginning)}"
+    return written, expected

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 def cause_sentences(cause: "Cause") -> list[str]:
     """Return a cause's sentence, and those of other mistakes with the same numbers."""
     where = f" {cause.where}" if cause.where else ""
-    lines = [f"{cause.edit}{where}"]
+    lines = [f"{cause.edit}{where}", *([f"  with {cause.names}"] if cause.names else [])]
     lines += [f"  or: {other}" for other in cause.alternatives]
     rows = f"explains {cause.rows} of {cause.of} rows that disagree in {', '.join(cause.results)}"
     rest = f"; {cause.unexplained} remain unexplained" if cause.unexplained else ""
