@@ -151,13 +151,13 @@ def search(
     screen = sample.rows(spread(np.flatnonzero(sample.wrong), SCREEN_ROWS))
     need = min(MIN_SCREENED, screen.wrong.size)
     candidates: list[Candidate] = []
-    edited = {key for edit in base for key in edit.changes}
+    targets_of_base = {key for edit in base for key in edit.changes}
     for name in names:
         wanted = tuple(sample.theirs) if part == "velocities" else ()
         small, full = (Program(name, s.columns, base, wanted) for s in (screen, sample))
         edits = [*_models(name, part, bool(base))]
         for targets, group in groupby(sites(name, part), lambda site: site.targets):
-            if edited.isdisjoint(targets):
+            if targets_of_base.isdisjoint(targets):
                 batch = [*group]
                 parts = [site.values(small) for site in batch]
                 values = {key: np.concatenate([p[key] for p in parts], -2) for key in targets}
@@ -167,7 +167,7 @@ def search(
                 edits += [site.edit(k) for site, k in chosen]
         plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
         for edit in edits:
-            if edited.isdisjoint(edit.changes):
+            if targets_of_base.isdisjoint(edit.changes):
                 rows = sample.fits(full.run({key: [t] for key, t in edit.changes.items()}))[0]
                 if (rows != plain).any() and (rows & sample.wrong).sum() >= need:
                     candidates.append(Candidate(name, (*base, edit), rows))
@@ -220,12 +220,12 @@ def _stages(sample: Sample, part: str, bases: int) -> Iterator[list[Candidate]]:
     singles = search(sample, part, names)
     yield singles
     yield _conditional(singles, sample)
-    fitted = (
+    candidates = (
         Candidate(name, (edit,), sample.given_by(name, (edit,)))
         for name in names
         for edit in fit_constants(sample, name, part)
     )
-    constants = _best_first(fitted, sample)
+    constants = _best_first(candidates, sample)
     yield [*constants, *_conditional(constants, sample)]
     harmless = [
         c for c in singles if (c.rows & ~sample.wrong).sum() >= REQUIRED * (~sample.wrong).sum()

@@ -143,7 +143,7 @@ def _kind(node: ast.AST) -> tuple[type, type]:
 def _patterns() -> list[tuple[tuple[type, type], ast.expr, list[str]]]:
     """Return the patterns: kind, expression, and what may be written for it."""
     pairs = entries("patterns")
-    return [(_kind(parse(text)), parse(text), written.split("; ")) for text, written in pairs]
+    return [(_kind(parse(text)), parse(text), templates.split("; ")) for text, templates in pairs]
 
 
 @cache
@@ -158,8 +158,8 @@ def entries(section: str) -> list[tuple[str, ...]]:
 def exchanges(names: tuple[str, ...]) -> list[dict[str, str]]:
     """Return the names that stand for the same of the other body, along the other axis ..."""
     twins = []
-    for letters, others, text in EXCHANGES:
-        table = str.maketrans(letters, others)
+    for letters, twin_letters, text in EXCHANGES:
+        table = str.maketrans(letters, twin_letters)
         pairs = {n: n.translate(table) for n in names}
         pairs |= dict(pair.split(":") for pair in text.split())
         twins.append({n: twin for n, twin in pairs.items() if n != twin and {n, twin} <= {*names}})
@@ -378,19 +378,19 @@ def difference(edit: Edit, name: str) -> tuple[str, str]:
     As it is written, and as it should be; terms with which both begin are left out.
     """
     target = next(iter(edit.changes))
-    whole = parse(statement_of(name, target).text)
-    texts = [unparse(node) for node in _nodes(whole)]
+    tree = parse(statement_of(name, target).text)
+    texts = [unparse(node) for node in _nodes(tree)]
     new: ast.AST = parse(edit.changes[target])
-    old: ast.AST = whole
+    old: ast.AST = tree
     while type(new) is type(old):
         pairs = zip(ast.iter_child_nodes(new), ast.iter_child_nodes(old), strict=False)
         inner = [(n, o) for n, o in pairs if ast.dump(n) != ast.dump(o)]
         if len(inner) != 1 or texts.count(unparse(inner[0][1])) != 1:
             break
         new, old = inner[0]
-    written, expected = unparse(new), unparse(old)
-    left = getattr(old, "left", old)
-    beginning = unparse(left)
-    if isinstance(left, ast.BinOp) and written.startswith(beginning):
-        return f"...{written.removeprefix(beginning)}", f"...{expected.removeprefix(beginning)}"
-    return written, expected
+    new_text, old_text = unparse(new), unparse(old)
+    first = getattr(old, "left", old)
+    beginning = unparse(first)
+    if isinstance(first, ast.BinOp) and new_text.startswith(beginning):
+        return f"...{new_text.removeprefix(beginning)}", f"...{old_text.removeprefix(beginning)}"
+    return new_text, old_text
