@@ -273,6 +273,7 @@ class TestTables:
         comparison = impact88.compare(table)
         assert not comparison.passed
         assert comparison.notes[0] == "rows that lack a result where there is one: 1"
+        assert "row 4: VAX = ''; expected a number" in comparison.notes[1]
 
 
 class TestMutants:

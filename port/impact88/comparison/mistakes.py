@@ -158,8 +158,15 @@ class Diagnosis:
             count += int(candidate.gives(sample).sum())
         names = tuple(n for n in self.names if n in explained and misfit[n].any())
         where = str(candidate.condition or "")
-        terms = describe_names(candidate.edits[0], candidate.name)
-        return Cause(candidate.text, where, names, count, wrong.size, candidate.alternatives, terms)
+        return Cause(
+            candidate.text,
+            where,
+            names,
+            count,
+            wrong.size,
+            candidate.alternatives,
+            describe_names(candidate.edits[0], candidate.name),
+        )
 
 
 def _disagreement(sample: Sample) -> Sample:
