@@ -111,8 +111,9 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
                 hole.replace(slot_name(0), f"({form.text.format(expression, '{0}')})")
                 for hole, expression in expressions.items()
             ]
-            trials = [text.format(FITTED) for text in texts]
-            constants = _fit(sample, program, {target: trials}, form)
+            constants = _fit(
+                sample, program, {target: [text.format(FITTED) for text in texts]}, form
+            )
             for text, constant in zip(texts, constants, strict=True):
                 if np.isfinite(constant):
                     number, note = _digits_and_meaning(constant, form)

@@ -41,8 +41,10 @@ def find_causes(table: Table) -> tuple[Cause, ...]:
 def mistake_limit(table: Table, name: str) -> Floats:
     """Return how far off the numbers of a program with a mistake may be."""
     scale = table.reference.scales[name]
-    growth = np.fmax(np.abs(table.theirs[name]) / scale, 1)  # near a singularity errors grow alike
-    lost = LOST_DIGITS / 10 * scale * growth**2
+    growth = np.fmax(np.abs(table.theirs[name]) / scale, 1)
+    if name in VELOCITIES:  # near a singularity their errors grow alike
+        growth **= 2
+    lost = LOST_DIGITS / 10 * scale * growth
     rounding: Floats = np.fmax(ROUNDINGS * table.reference.bounds[name], lost)
     return rounding + table.units[name] / 2 + table.elimination[name]
 

@@ -360,8 +360,9 @@ def describe(edit: Edit, name: str) -> str:
     target, *twins = edit.changes
     statement = statement_of(name, target)
     new, old = difference(edit, name)
-    sentence = f"{statement.subject}: {new}{edit.note}, should be {old}"
-    sentence += f", in {target} = {statement.text}"
+    sentence = (
+        f"{statement.subject}: {new}{edit.note}, should be {old}, in {target} = {statement.text}"
+    )
     return f"{sentence} (likewise in {', '.join(twins)})" if twins else sentence
 
 
@@ -392,5 +393,6 @@ def difference(edit: Edit, name: str) -> tuple[str, str]:
     first = getattr(old, "left", old)
     beginning = unparse(first)
     if isinstance(first, ast.BinOp) and new_text.startswith(beginning):
-        return f"...{new_text.removeprefix(beginning)}", f"...{old_text.removeprefix(beginning)}"
+        end = new_text.removeprefix(beginning) or " nothing more"
+        return f"...{end}", f"...{old_text.removeprefix(beginning)}"
     return new_text, old_text

@@ -46,10 +46,9 @@ def as_text(comparison: "Comparison") -> str:
         shown = ", ".join(ids[:5]) + ", ..." * (len(ids) > 5)
         lines.append(f"{reason}: {len(ids)} of the vectors ({shown})")
     if kit := comparison.kit:
-        vectors = f"{kit['passed']} of {kit['vectors']} vectors pass"
         lines.append(
-            f"kit {kit['id']}: {vectors}; {comparison.agreeing} agree, the others have no number "
-            "to compare or fail"
+            f"kit {kit['id']}: {kit['passed']} of {kit['vectors']} vectors pass; "
+            f"{comparison.agreeing} agree, the others have no number to compare or fail"
         )
     return "\n".join(lines)
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ...names import FINAL_VELOCITIES, SCENE
 
-NAMES = ("impulses", "frame", "closed", "equations", "bodies", "trial", "ratio")
+NAMES = ("impulses", "frame", "closed", "equations", "bodies", "trial", "engine")
 COLUMNS = tuple(SCENE)
 VELOCITIES = tuple(FINAL_VELOCITIES)
 
