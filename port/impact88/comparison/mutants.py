@@ -390,9 +390,8 @@ def difference(edit: Edit, name: str) -> tuple[str, str]:
             break
         new, old = inner[0]
     new_text, old_text = unparse(new), unparse(old)
-    first = getattr(old, "left", old)
-    beginning = unparse(first)
-    if isinstance(first, ast.BinOp) and new_text.startswith(beginning):
-        end = new_text.removeprefix(beginning) or " nothing more"
-        return f"...{end}", f"...{old_text.removeprefix(beginning)}"
+    start = unparse(getattr(old, "left", old))
+    if " " in start and new_text.startswith(start) and old_text.startswith(start):
+        new_text = f"...{new_text.removeprefix(start) or ' nothing more'}"
+        old_text = f"...{old_text.removeprefix(start)}"
     return new_text, old_text
