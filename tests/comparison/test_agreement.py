@@ -58,7 +58,7 @@ class TestSpellings:
 
     def test_the_closed_forms_keep_to_the_bound(self) -> None:
         ours = reference(SCENE, VELOCITIES)
-        for name in ("impulses", "ratio"):
+        for name in ("impulses", "engine"):
             program = Program(name, SCENE)
             for velocity in VELOCITIES:
                 off = np.abs(program.base[velocity] - ours.values[velocity])
@@ -67,6 +67,10 @@ class TestSpellings:
     def test_every_statement_has_a_subject(self) -> None:
         for name in spellings.NAMES:
             assert all(s.subject for s in spellings.spelling(name).statements)
+
+    def test_every_result_has_a_statement(self) -> None:
+        targets = {s.target for s in spellings.spelling("impulses").statements}
+        assert {*COMPARED} <= targets
 
 
 class TestBound:

@@ -7,27 +7,9 @@ import numpy as np
 
 from .agreement import Bools
 from .evaluation import Floats, Program, evaluate
+from .mutants import entries
 from .spellings import COLUMNS
 
-QUANTITIES = {
-    "the closing speed": "-gn",
-    "the size of the closing speed": "abs(gn)",
-    "the sliding velocity": "gt",
-    "the sliding speed": "abs(gt)",
-    "the normal impulse": "Pn",
-    "the size of MU": "abs(MU)",
-    "the size of MU less the critical friction coefficient": "abs(MU) - abs(muc)",
-    "the sliding velocity of the mass centres": "(UX - VX)*tx + (UY - VY)*ty",
-    "the closing speed times the sliding velocity": "-gn*gt",
-    "the relative spin before": "gw",
-    "TA + PA": "TA + PA",
-    "TB + PB": "TB + PB",
-    "the size of TA + PA": "abs(TA + PA)",
-    "the size of TB + PB": "abs(TB + PB)",
-    "MA / MB": "MA/MB",
-    "the number of the row": "row",
-}
-"""Further quantities of a condition, in names of ``spellings/impulses.py``."""
 RELATIONS: dict[str, Any] = {
     "above": np.greater,
     "below": np.less,
@@ -66,7 +48,7 @@ def quantities_of(columns: Mapping[str, Floats]) -> dict[str, Floats]:
     """Return what a condition may be about, by name."""
     program = Program("impulses", columns)
     values: dict[str, Any] = {name: columns[name] for name in COLUMNS}
-    values |= {name: evaluate(text, program.base) for name, text in QUANTITIES.items()}
+    values |= {name: evaluate(text, program.base) for name, text in entries("quantities")}
     size = program.size
     return {name: np.broadcast_to(np.asarray(x, float), size) for name, x in values.items()}
 

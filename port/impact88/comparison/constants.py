@@ -1,16 +1,14 @@
 """Fit a constant that has a wrong value: each row gives its own, and the rows must agree."""
 
-import ast
-from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .conditions import roundest
 from .evaluation import FITTED, Alternatives, Edit, Floats, Program, evaluate
-from .mutants import sites, slot_name
+from .mutants import entries, sites, slot_name
 from .numbers import spread
-from .spellings import COLUMNS, NAMES, VELOCITIES, parse, spelling
+from .spellings import COLUMNS, NAMES, VELOCITIES
 
 if TYPE_CHECKING:
     from .diagnosis import Sample
@@ -22,7 +20,7 @@ MIN_ROWS = 2  # that give a constant
 MAX_SPREAD = 1e-2  # of the constants that the rows give, relative; the digits then decide
 EXACT_SPREAD = 1e-9  # up to which the constant has all its digits
 SHORT_TOLERANCE = 1e-12  # relative distance at which a constant has nine digits or fewer
-KNOWN_TOLERANCE = 4e-7  # relative distance at which a constant is a known one; 3.14159 is no 1
+KNOWN_TOLERANCE = 4e-7  # of a known ratio's distance from 1: a constant as close is that ratio
 RANK = 5  # after the edits without a constant
 RANK_KNOWN = 1
 GROUPS = {
@@ -30,33 +28,7 @@ GROUPS = {
     ">": "VAX,VAY,VBX,VBY,WAF,WBF VAX,VAY,VBX,VBY VAX,VAY VBX,VBY WAF,WBF KI,KF DVA,DVB PN,PT",
 }
 """Columns read, and results shown, that share a constant."""
-KNOWN = {
-    "1.467 for 22/15": 1.467 * 15 / 22,
-    "3.14 for pi": 3.14 / pi,
-    "22/7 for pi": 22 / 7 / pi,
-    "3.1416 for pi": 3.1416 / pi,
-    "3.14159 for pi": 3.14159 / pi,
-    "57.3 for 180/pi": 57.3 * pi / 180,
-    "0.01745 for pi/180": 0.01745 * 180 / pi,
-    "32.2 for 32.174": 32.2 / 32.174,
-    "9.81 for 9.80665": 9.81 / 9.80665,
-    "ft/s for mph": 22 / 15,
-    "ft/s for km/h": 1000 / 3600 / 0.3048,
-    "ft/s for knots": 1852 / 3600 / 0.3048,
-    "m/s for ft/s": 0.3048,
-    "km/h for m/s": 3.6,
-    "mph for m/s": 0.44704,
-    "kg for lb": 0.45359237,
-    "kg for slug": 14.59390294,
-    "weight for mass, in ft and s": 32.174,
-    "weight for mass, 32.2 ft/s²": 32.2,
-    "weight for mass, in m and s": 9.80665,
-    "degrees for radians": 180 / pi,
-    "revolutions per minute for radians per second": 30 / pi,
-    "revolutions per second for radians per second": 1 / (2 * pi),
-    "inches for feet": 12.0,
-    "square inches for square feet": 144.0,
-}
+KNOWN = {meaning: float(evaluate(text, {})) for meaning, text in entries("ratios")}
 """Ratios of constants and units that are mistaken for each other."""
 
 
@@ -88,7 +60,7 @@ LIMITED = ("E", "MU", "EM")
 def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
     """Return the edits of a part of a spelling by one constant that the rows agree on."""
     subset = sample.rows(spread(np.flatnonzero(sample.wrong), ROWS))
-    program = subset.program(name)
+    program = Program(name, subset.columns)
     edits = _statement_constants(subset, program, part)
     return edits + _column_constants(subset, program) if name == NAMES[0] else edits
 
@@ -96,8 +68,7 @@ def fit_constants(sample: "Sample", name: str, part: str) -> list[Edit]:
 def _column_constants(sample: "Sample", program: Program) -> list[Edit]:
     """Return the edits of columns as they are read, or results as they are shown."""
     edits = []
-    for side, names in (("<", COLUMNS[:-1]), (">", (*sample.theirs,))):
-        verb = "read" if side == "<" else "shown"
+    for side, verb, names in (("<", "read", COLUMNS[:-1]), (">", "shown", (*sample.theirs,))):
         groups = [group.split(",") for group in GROUPS[side].split()]
         groups = [g for g in groups if set(g) <= set(names)] + [[name] for name in names]
         for group in groups:
@@ -126,12 +97,10 @@ def _known_factor(sample: "Sample", program: Program, changes: Alternatives) -> 
 
 def _statement_constants(sample: "Sample", program: Program, part: str) -> list[Edit]:
     """Return the edits of an expression in a statement by a constant factor or term."""
-    text = spelling(program.name)
-    reading = {s.target for s in text.statements[: text.own]} if program.name != NAMES[0] else set()
     places: dict[str, dict[str, str]] = {}
     for site in sites(program.name, part):
         (target, *twins), (expression, *others) = site.targets, site.expressions
-        if not (twins or others or target in reading or expression in VELOCITIES):
+        if not (twins or others or expression in VELOCITIES):
             value = evaluate(expression, program.scope(target))
             if np.ndim(value) < 2 and np.size(value) > 1 and value.dtype == float:
                 places.setdefault(target, {})[site.holes[0]] = expression
@@ -139,18 +108,17 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     for target, expressions in places.items():
         for form in (FACTOR, TERM, CONSTANT):
             texts = [
-                hole.replace(slot_name(0), f"({form.text.format(expression, FITTED)})")
+                hole.replace(slot_name(0), f"({form.text.format(expression, '{0}')})")
                 for hole, expression in expressions.items()
             ]
-            constants = _fit(sample, program, {target: texts}, form)
-            for (hole, expression), constant in zip(expressions.items(), constants, strict=True):
+            constants = _fit(
+                sample, program, {target: [text.format(FITTED) for text in texts]}, form
+            )
+            for text, constant in zip(texts, constants, strict=True):
                 if np.isfinite(constant):
-                    number, meaning = _digits_and_meaning(constant, form)
-                    new_text = form.text.format(expression, number)
-                    changes = {target: hole.replace(slot_name(0), f"({new_text})")}
-                    rank = RANK_KNOWN if meaning else RANK
-                    new_text = ast.unparse(parse(new_text)) + meaning
-                    edits.append(Edit("", changes, rank, (new_text,), (expression,)))
+                    number, note = _digits_and_meaning(constant, form)
+                    rank = RANK_KNOWN if note else RANK
+                    edits.append(Edit("", {target: text.format(number)}, rank, note))
     return edits
 
 
@@ -163,14 +131,12 @@ def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) 
     """
     shape = (len(next(iter(changes.values()))), sample.wrong.size)
 
-    def misfit(k: Floats) -> Any:
-        names = program.run(changes, list(k))
-        return np.array(
-            [
-                (np.broadcast_to(names[n], shape) - theirs) / sample.limits[n]
-                for n, theirs in sample.theirs.items()
-            ]
-        )
+    def misfit(k: Floats) -> Floats:
+        names = program.run(changes, k)
+        differences = np.empty((len(sample.theirs), *shape))
+        for row, (n, theirs) in zip(differences, sample.theirs.items(), strict=True):
+            row[:] = (names[n] - theirs) / sample.limits[n]
+        return differences
 
     k = np.full(shape, form.neutral)
     new = k + FIRST_STEP
@@ -191,7 +157,7 @@ def _fit(sample: "Sample", program: Program, changes: Alternatives, form: Form) 
 def _common_constant(values: Floats, form: Form) -> float:
     """Return the constant that half of the rows agree on, with the fewest digits; else NaN.
 
-    Where rounded results leave it open, those between the quartiles agree.
+    Where rounded results leave it open, those from the first quarter to the last agree.
     """
     values = np.sort(values[np.isfinite(values)])
     if values.size < MIN_ROWS:
@@ -204,7 +170,8 @@ def _common_constant(values: Floats, form: Form) -> float:
     if values[start + half] - values[start] <= EXACT_SPREAD * abs(middle):
         short = float(f"{middle:.9g}")
         return short if abs(short - middle) <= SHORT_TOLERANCE * abs(middle) else middle
-    low, high = (float(q) for q in np.quantile(values, (0.25, 0.75)))
+    outer = (values.size - 1) // 4
+    low, high = float(values[outer]), float(values[-1 - outer])
     return roundest(low, high) if high - low <= MAX_SPREAD * abs(middle) else np.nan
 
 
@@ -214,6 +181,7 @@ def _digits_and_meaning(constant: float, form: Form) -> tuple[str, str]:
         name
         for name, value in KNOWN.items()
         if form is FACTOR
-        and min(abs(constant / value - 1), abs(constant * value - 1)) < KNOWN_TOLERANCE
+        and min(abs(constant / value - 1), abs(constant * value - 1))
+        < KNOWN_TOLERANCE * min(1, abs(value - 1))
     ]
     return f"{constant:.15g}", f" ({meanings[0]})" if meanings else ""

@@ -9,6 +9,7 @@ not give the rows kept out of the search.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,9 +19,9 @@ from .agreement import Bools
 from .conditions import Condition, find_condition, quantities_of
 from .constants import fit_constants
 from .evaluation import Edit, Floats, Program
-from .mutants import RANK_MODEL, Site, describe, models, sites
+from .mutants import RANK_MODEL, describe, models, sites
 from .numbers import spread
-from .spellings import NAMES, VELOCITIES, spelling
+from .spellings import NAMES, VELOCITIES
 
 SCREEN_ROWS = 10  # rows that disagree on which every edit is tried
 MIN_SCREENED = 2  # of them, that an edit under a condition gives
@@ -28,7 +29,6 @@ REQUIRED = 0.96  # of the rows, that an explanation gives
 MARGIN = 0.01  # of the rows, by which a likelier explanation may give fewer
 MIN_HELD_OUT = 4  # rows; with fewer the search uses all
 MIN_BITS = 24.0  # of information in the rows: about a million edits are tried
-WITH_READING = ("impulses", "trial")  # spellings in which a mistake of the reading is looked for
 MAX_CONDITIONAL = 60  # edits for which a condition is looked for
 MAX_BASES = 4  # edits on top of which a second one is looked for
 MAX_ALTERNATIVES = 3  # listed, of those that give the same numbers
@@ -55,12 +55,10 @@ class Sample(NamedTuple):
         """Return the sample with some of the results."""
         return self._replace(theirs={n: self.theirs[n] for n in names if n in self.theirs})
 
-    def program(
-        self, name: str, edits: tuple[Edit, ...] = (), wanted: Sequence[str] = ()
-    ) -> Program:
-        """Return a spelling with edits on the rows; with their final velocities, if given."""
-        velocities = {n: self.columns[n] for n in VELOCITIES if n in self.columns}
-        return Program(name, self.columns, edits, velocities or None, wanted)
+    def given_by(self, name: str, edits: tuple[Edit, ...] = ()) -> Bools:
+        """Return the rows that a spelling with edits gives."""
+        rows: Bools = self.fits(Program(name, self.columns, edits).base)[0]
+        return rows
 
     def fits(self, names: Mapping[str, Any], alternatives: int = 1) -> Bools:
         """Return (alternatives, rows): whether all results are within their limits."""
@@ -88,7 +86,7 @@ class Candidate(NamedTuple):
     @property
     def rank(self) -> tuple[int, int, int]:
         """The likeliest first, and of those the smallest edit."""
-        length = sum(len(text) for edit in self.edits for text in edit.written)
+        length = sum(len(text) for edit in self.edits for text in edit.changes.values())
         return sum(edit.rank for edit in self.edits), NAMES.index(self.name), length
 
     @property
@@ -98,11 +96,10 @@ class Candidate(NamedTuple):
 
     def gives(self, sample: Sample) -> Bools:
         """Return the rows of a sample that the program gives."""
-        rows: Bools = sample.fits(sample.program(self.name, self.edits).base)[0]
+        rows = sample.given_by(self.name, self.edits)
         if self.condition is not None:
             inside = self.condition.rows(quantities_of(sample.columns))
-            plain = sample.fits(sample.program(self.name).base)[0]
-            rows = np.where(inside, rows, plain)
+            rows = np.where(inside, rows, sample.given_by(self.name))
         return rows
 
 
@@ -120,7 +117,7 @@ def is_complete(rows: Bools, sample: Sample) -> bool:
 
 def information(sample: Sample) -> float:
     """Return the bits that the rows that disagree hold: into how many their difference divides."""
-    ours = sample.program(NAMES[0]).base
+    ours = Program(NAMES[0], sample.columns).base
     bits = 0.0
     for name, theirs in sample.theirs.items():
         off = np.abs(theirs - ours[name])[sample.wrong] / sample.limits[name][sample.wrong]
@@ -128,17 +125,11 @@ def information(sample: Sample) -> float:
     return bits
 
 
-def _trials(name: str, part: str, is_second: bool) -> Iterator[Site | Edit]:
-    """Yield what is tried in a part of a spelling: sites, then laws and conventions.
+def _models(name: str, part: str, is_second: bool) -> Iterator[Edit]:
+    """Yield laws, in the spelling that they are written in, and conventions.
 
-    Mistakes of the reading are tried in some spellings only, laws in the one that they are written
-    in, and as a second edit only those that have a name.
+    As a second edit only those that have a name.
     """
-    text = spelling(name)
-    reading = {statement.target for statement in text.statements[: text.own]}
-    for site in sites(name, part):
-        if is_second or name in WITH_READING or reading.isdisjoint(site.targets):
-            yield site
     for edit in models() if is_second or name == NAMES[0] else ():
         shown = {key[2:] for key in edit.changes if key[0] == ">"}
         is_law = any(key[0] not in "<>" for key in edit.changes)
@@ -160,22 +151,31 @@ def search(
     screen = sample.rows(spread(np.flatnonzero(sample.wrong), SCREEN_ROWS))
     need = min(MIN_SCREENED, screen.wrong.size)
     candidates: list[Candidate] = []
-    targets = {key for edit in base for key in edit.changes}
+    targets_of_base = {key for edit in base for key in edit.changes}
     for name in names:
         wanted = tuple(sample.theirs) if part == "velocities" else ()
-        small, full = (s.program(name, base, wanted) for s in (screen, sample))
+        small, full = (Program(name, s.columns, base, wanted) for s in (screen, sample))
+        edits = [*_models(name, part, bool(base))]
+        for targets, group in groupby(sites(name, part), lambda site: site.targets):
+            if targets_of_base.isdisjoint(targets):
+                batch = [*group]
+                parts = [site.values(small) for site in batch]
+                values = {key: np.concatenate([p[key] for p in parts], -2) for key in targets}
+                options = [(site, k) for site in batch for k in range(len(site.options))]
+                counts = screen.fits(small.propagate(values), len(options)).sum(1)
+                chosen = (options[place] for place in np.flatnonzero(counts >= need))
+                edits += [site.edit(k) for site, k in chosen]
         plain = sample.fits(full.base)[0]  # what an edit that changes nothing gives
-        for trial in _trials(name, part, bool(base)):
-            if targets.isdisjoint(trial.targets):
-                counts = screen.fits(trial.run(small), len(trial.options)).sum(1)
-                options = np.flatnonzero(counts >= need).tolist()
-                values = trial.run(full, options) if options else {}
-                fits = sample.fits(values, len(options)) if options else ()
-                candidates += [
-                    Candidate(name, (*base, trial.edit(k)), rows)
-                    for k, rows in zip(options, fits, strict=True)
-                    if (rows != plain).any()
-                ]
+        for edit in edits:
+            if targets_of_base.isdisjoint(edit.changes):
+                rows = sample.fits(full.run({key: [t] for key, t in edit.changes.items()}))[0]
+                if (rows != plain).any() and (rows & sample.wrong).sum() >= need:
+                    candidates.append(Candidate(name, (*base, edit), rows))
+    return _best_first(candidates, sample)
+
+
+def _best_first(candidates: Iterable[Candidate], sample: Sample) -> list[Candidate]:
+    """Return candidates sorted by the rows that they give, then by their likelihood."""
     return sorted(candidates, key=lambda c: (-score(c.rows, sample), c.rank))
 
 
@@ -189,17 +189,15 @@ def _conditional(candidates: Sequence[Candidate], sample: Sample) -> list[Candid
         if condition is not None:
             rows = np.where(condition.rows(quantities), candidate.rows, ~sample.wrong)
             conditional.append(candidate._replace(condition=condition, rows=rows))
-    return sorted(conditional, key=lambda c: (-score(c.rows, sample), c.rank))
+    return _best_first(conditional, sample)
 
 
 def _distinct(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Return the likeliest of the candidates that give the same rows."""
-    best: dict[bytes, Candidate] = {}
+    """Return the first of the candidates that give the same rows."""
+    distinct: dict[bytes, Candidate] = {}
     for candidate in candidates:
-        key = candidate.rows.tobytes()
-        if key not in best or candidate.rank < best[key].rank:
-            best[key] = candidate
-    return list(best.values())
+        distinct.setdefault(candidate.rows.tobytes(), candidate)
+    return list(distinct.values())
 
 
 def explain(sample: Sample, held_out: Sample, part: str) -> Candidate | None:
@@ -222,11 +220,12 @@ def _stages(sample: Sample, part: str, bases: int) -> Iterator[list[Candidate]]:
     singles = search(sample, part, names)
     yield singles
     yield _conditional(singles, sample)
-    constants = [
-        Candidate(name, (edit,), sample.fits(sample.program(name, (edit,)).base)[0])
+    candidates = (
+        Candidate(name, (edit,), sample.given_by(name, (edit,)))
         for name in names
         for edit in fit_constants(sample, name, part)
-    ]
+    )
+    constants = _best_first(candidates, sample)
     yield [*constants, *_conditional(constants, sample)]
     harmless = [
         c for c in singles if (c.rows & ~sample.wrong).sum() >= REQUIRED * (~sample.wrong).sum()

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .spellings import COLUMNS, Statement, names_in, spelling
+from .spellings import COLUMNS, VELOCITIES, Statement, names_in, spelling
 
 Floats = NDArray[np.float64]
 Values = dict[str, Any]
@@ -27,7 +27,7 @@ def round_to_single(x: Any) -> Any:
     return np.asarray(x, np.float32).astype(np.float64)
 
 
-FUNCTIONS: Mapping[str, Any] = {
+FUNCTIONS: dict[str, Any] = {
     name: getattr(np, name)
     for name in "sin cos tan sqrt hypot where abs sign trunc rint fmod minimum maximum".split()
 } | {
@@ -42,33 +42,14 @@ class Edit(NamedTuple):
     """A mistake or a convention.
 
     ``changes`` maps a statement's target to the expression in its place; a column as it is read is
-    "< UX", a result as it is shown "> VAX". ``says`` describes it; an edit of a statement is
-    ``written`` in place of ``expected`` there. The lower the ``rank``, the likelier.
+    "< UX", a result as it is shown "> VAX". ``says`` describes it, if it has a name; ``note``: what
+    a constant is known as. The lower the ``rank``, the likelier.
     """
 
     says: str
     changes: Mapping[str, str]
     rank: int = 0
-    written: tuple[str, ...] = ()
-    expected: tuple[str, ...] = ()
-
-    @property
-    def targets(self) -> tuple[str, ...]:
-        """What is changed."""
-        return tuple(self.changes)
-
-    @property
-    def options(self) -> "tuple[Edit]":
-        """The edit itself: a site has several."""
-        return (self,)
-
-    def run(self, program: "Program", _: Sequence[int] = (0,)) -> Values:
-        """Return a program's values with the edit."""
-        return program.run({key: [text] for key, text in self.changes.items()})
-
-    def edit(self, place: int) -> "Edit":
-        """Return an option: the edit itself."""
-        return self.options[place]
+    note: str = ""
 
 
 @cache
@@ -76,10 +57,10 @@ def _code(text: str) -> CodeType:
     return compile(text, "<statement>", "eval")
 
 
-def evaluate(text: str, names: Values) -> Any:
+def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     """Return an expression's value; NaN where it has none."""
     try:
-        return eval(_code(text), names)
+        return eval(_code(text), FUNCTIONS, names)
     except (ArithmeticError, NameError, TypeError, ValueError):
         return np.nan
 
@@ -103,11 +84,9 @@ class Program:
     name : str
         The spelling.
     columns : mapping of str to ndarray
-        The scenes, and the number of the row.
+        The scenes, the number of the row, and final velocities to take instead of computing them.
     edits : sequence of Edit
         Edits, the later on top of the earlier.
-    velocities : mapping of str to ndarray, optional
-        Final velocities to take instead of computing them.
     wanted : sequence of str, optional
         The results that are computed; all by default.
     """
@@ -117,13 +96,12 @@ class Program:
         name: str,
         columns: Mapping[str, Floats],
         edits: Sequence[Edit] = (),
-        velocities: Mapping[str, Floats] | None = None,
         wanted: Sequence[str] = (),
     ) -> None:
         self.name = name
         self.spelling = spelling(name)
         self.size = int(np.size(columns["UX"]))
-        self.typed: Values = {**FUNCTIONS, **columns}
+        self.columns = columns
         self.statements = list(self.spelling.statements)
         if wanted:
             first = self.spelling.results
@@ -139,28 +117,28 @@ class Program:
             else s
             for s in self.statements
         ]
-        columns = {n[2:]: evaluate(t, self.typed) for n, t in written.items() if n[0] == "<"}
-        self.base: Values = {**self.typed, **columns}
+        read = {n[2:]: evaluate(t, columns) for n, t in written.items() if n[0] == "<"}
         self.shown = [{key: [text] for key, text in edit.changes.items()} for edit in edits]
-        self._first = 0
-        self.base = self._advance(self.base, set(COLUMNS), {})
-        if velocities:
-            self._first = self.spelling.results
-            self.base = self.propagate(velocities)
-
-    @property
-    def linear(self) -> frozenset[str]:
-        """Targets whose expressions contain unknowns."""
         equations = self.spelling.equations
-        return frozenset({*equations, "slip", "hold"}) if equations else frozenset()
+        self.linear = frozenset({*equations, "slip", "hold"}) if equations else frozenset()
+        self._first = 0
+        self._plans: dict[tuple[frozenset[str], ...], list[Statement]] = {}
+        texts = {statement.target: [statement.text] for statement in self.statements}
+        self.computed = self._advance({**columns, **read}, COLUMNS, texts)
+        if velocities := {n: columns[n] for n in VELOCITIES if n in columns}:
+            self._first = self.spelling.results
+            self._plans.clear()
+            self.computed = self._advance({**self.computed, **velocities}, velocities, {})
+        self.base = self._show(self.computed, {})
 
     def scope(self, target: str) -> Values:
         """Return the names that a statement's expression may read, with their values."""
-        return {**self.base, **self.basis} if target in self.linear else self.base
+        names = self.computed
+        return {**names, **self.basis} if target in self.linear else names
 
     def propagate(self, values: Mapping[str, Any]) -> Values:
         """Return all values where some statements or columns have other values."""
-        return self._advance({**self.base, **values}, set(values), {})
+        return self._show(self._advance({**self.computed, **values}, values, {}), {})
 
     def effects(
         self, changes: Iterable[Mapping[str, Any]], names: Iterable[str]
@@ -174,57 +152,72 @@ class Program:
                     total += np.abs(outcome[name] - self.base[name])
         return sums
 
-    def run(self, changes: Alternatives, constants: Sequence[Any] = (np.nan,)) -> Values:
+    def run(self, changes: Alternatives, constants: Iterable[Any] = (np.nan,)) -> Values:
         """Return all values with other expressions in some places.
 
         ``changes`` has the alternatives of each place, and ``constants`` the value of `FITTED` in
         each of them.
         """
         columns = {
-            key[2:]: self._values(texts, self.typed, constants)
+            key[2:]: self._values(texts, self.columns, constants)
             for key, texts in changes.items()
             if key[0] == "<"
         }
-        return self._advance({**self.base, **columns}, set(columns), changes, constants)
+        names = self._advance({**self.computed, **columns}, columns, changes, constants)
+        return self._show(names, changes, constants)
 
-    def _values(self, texts: Sequence[str], scope: Values, constants: Sequence[Any]) -> Any:
+    def _values(
+        self, texts: Sequence[str], scope: Mapping[str, Any], constants: Iterable[Any]
+    ) -> Any:
         """Return the values of alternatives."""
         values = [evaluate(t, {**scope, FITTED: x}) for t, x in zip(texts, constants, strict=True)]
         return values[0] if len(values) == 1 else stack(values, self.size)
 
+    def _plan(self, kept: frozenset[str], edited: frozenset[str]) -> list[Statement]:
+        """Return the statements to compute where names are changed, and statements edited."""
+        dirty, plan = {*kept}, []
+        for statement in self.statements[self._first :]:
+            target = statement.target
+            is_stale = target in edited or not dirty.isdisjoint(statement.reads)
+            if is_stale and target not in kept:
+                plan.append(statement)
+                dirty.update(target.split(", "))
+        return plan
+
     def _advance(
         self,
         names: Values,
-        dirty: set[str],
+        kept: Iterable[str],
         changes: Alternatives,
-        constants: Sequence[Any] = (np.nan,),
+        constants: Iterable[Any] = (np.nan,),
     ) -> Values:
-        """Compute what is edited or reads a dirty name; what is dirty at first keeps its value."""
-        fixed = frozenset(dirty)
-        last = self.spelling.equations[-1] if self.spelling.unknowns else ""
-        linear = self.linear
-        for statement in self.statements[self._first :]:
+        """Compute what is edited or follows from names that have other values, and keep these."""
+        key = (frozenset(kept), frozenset(changes))
+        if key not in self._plans:
+            self._plans[key] = self._plan(*key)
+        for statement in self._plans[key]:
             target = statement.target
-            is_stale = target in changes or target not in names
-            if target not in fixed and (is_stale or not dirty.isdisjoint(statement.reads)):
-                scope = {**names, **self.basis} if target in linear else names
-                texts = changes.get(target)
-                names[target] = (
-                    self._values(texts, scope, constants)
-                    if texts
-                    else evaluate(statement.text, scope)
-                )
-                dirty.add(target)
-            if target == last and not dirty.isdisjoint(self.spelling.equations):
+            if statement.is_solution:
                 names.update(self._solve([names[name] for name in self.spelling.equations]))
-                dirty.update(self.spelling.unknowns)
+                continue
+            scope = {**names, **self.basis} if target in self.linear else names
+            texts = changes.get(target)
+            names[target] = (
+                self._values(texts, scope, constants) if texts else evaluate(statement.text, scope)
+            )
+        return names
+
+    def _show(
+        self, names: Values, changes: Alternatives, constants: Iterable[Any] = (np.nan,)
+    ) -> Values:
+        """Return computed values, with results as they are shown."""
         for shown in (*self.shown, changes):
             results = {
                 key[2:]: self._values(texts, names, constants)
                 for key, texts in shown.items()
                 if key[0] == ">"
             }
-            names.update(results)
+            names = {**names, **results} if results else names
         return names
 
     def _solve(self, equations: Sequence[Any]) -> dict[str, Any]:

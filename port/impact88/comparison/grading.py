@@ -137,6 +137,6 @@ class Table:
         if self.missing.any():
             row = int(self.missing.argmax())
             name = next(n for n in self.names if not np.isfinite(self.theirs[n][row]))
-            cell = quoted(str(self.columns[name][row]))
+            cell = quoted(str(self.columns[name][row] or ""))
             notes.append(f"the first of them is row {row + 1}: {name} = {cell}; expected a number")
         return tuple(notes)

@@ -9,6 +9,7 @@ from .agreement import LOST_DIGITS
 from .diagnosis import MIN_HELD_OUT, REQUIRED, Candidate, Sample, explain
 from .evaluation import Floats, Program
 from .grading import Table
+from .mutants import describe_names
 from .numbers import spread
 from .rows import mistake_of_table
 from .spellings import COLUMNS, VELOCITIES
@@ -39,9 +40,13 @@ def find_causes(table: Table) -> tuple[Cause, ...]:
 
 def mistake_limit(table: Table, name: str) -> Floats:
     """Return how far off the numbers of a program with a mistake may be."""
-    size = np.fmax(table.reference.scales[name], np.abs(table.theirs[name]))
-    rounding = np.fmax(ROUNDINGS * table.reference.bounds[name], LOST_DIGITS * size / 10)
-    return table.units[name] / 2 + rounding + table.elimination[name]
+    scale = table.reference.scales[name]
+    growth = np.fmax(np.abs(table.theirs[name]) / scale, 1)
+    if name in VELOCITIES:  # near a singularity their errors grow alike
+        growth **= 2
+    lost = LOST_DIGITS / 10 * scale * growth
+    rounding: Floats = np.fmax(ROUNDINGS * table.reference.bounds[name], lost)
+    return rounding + table.units[name] / 2 + table.elimination[name]
 
 
 class Diagnosis:
@@ -81,11 +86,13 @@ class Diagnosis:
     def _causes_of_results(self, names: Sequence[str]) -> tuple[Cause, ...]:
         """Return the mistakes in results, which follow from the table's own velocities."""
         causes: list[Cause] = []
+        right: list[str] = []  # they follow from the velocities, with a mistake's edit, too
         while names and len(causes) < MAX_RESULT_CAUSES:
-            samples = self._samples(names)
-            names = [n for n in names if _disagreement(samples[0].only([n])).wrong.any()]
+            samples = self._samples([*names, *right])
+            right += [n for n in names if not _disagreement(samples[0].only([n])).wrong.any()]
+            names = [n for n in names if n not in right]
             for group in [names, *([name] for name in names)]:
-                parts = [_disagreement(sample.only(group)) for sample in samples]
+                parts = [_disagreement(sample.only([*group, *right])) for sample in samples]
                 candidate = explain(parts[0], parts[1], "results")
                 if candidate is not None:
                     break
@@ -112,15 +119,19 @@ class Diagnosis:
     def _sample(self, rows: Places, names: Sequence[str]) -> Sample:
         """Return rows of the table with some of its results.
 
-        Results without velocities follow from those that the table has.
+        Results without velocities follow from those that the table has, with all their digits
+        where the velocities agree.
         """
         limits = {n: self.limits[n][rows] for n in names}
         velocities: dict[str, Floats] = {}
         columns = columns_of(self.table, rows)
         if {*VELOCITIES}.isdisjoint(names):
-            velocities = {n: self.table.theirs[n][rows] for n in self.velocities}
-            program = Program("impulses", columns, (), velocities, names)
-            moves = ({n: x + self.limits[n][rows]} for n, x in velocities.items())
+            table = self.table
+            wrong = np.any([table.misfit[n][rows] for n in self.velocities], 0)
+            for n in self.velocities:
+                velocities[n] = np.where(wrong, table.theirs[n][rows], table.ours[n][rows])
+            program = Program("impulses", {**columns, **velocities}, wanted=names)
+            moves = ({n: x + wrong * self.limits[n][rows]} for n, x in velocities.items())
             effects = program.effects(moves, names)
             limits = {name: limit + effects[name] for name, limit in limits.items()}
         return Sample(
@@ -149,12 +160,20 @@ class Diagnosis:
             count += int(candidate.gives(sample).sum())
         names = tuple(n for n in self.names if n in explained and misfit[n].any())
         where = str(candidate.condition or "")
-        return Cause(candidate.text, where, names, count, wrong.size, candidate.alternatives)
+        return Cause(
+            candidate.text,
+            where,
+            names,
+            count,
+            wrong.size,
+            candidate.alternatives,
+            describe_names(candidate.edits[0], candidate.name),
+        )
 
 
 def _disagreement(sample: Sample) -> Sample:
     """Return a sample with the rows as wrong in which results do not follow from velocities."""
-    wrong = ~sample.fits(sample.program("impulses").base)[0]
+    wrong = ~sample.given_by("impulses")
     if wrong.mean() <= 1 - REQUIRED:
         wrong[:] = False
     return sample._replace(wrong=wrong)

@@ -25,7 +25,7 @@ def mistake_of_table(table: Table, limits: Mapping[str, Floats]) -> str:
     if _are_other_rows(table, limits):
         return "the results are those of other rows: the order of the rows differs"
     if all(_is_cut(table, name) for name in names):
-        return "the last digit is cut, not rounded"
+        return "the last digit is cut or rounded down, not rounded"
     if all(_is_single(table, name) for name in names):
         return "results are computed or written in single precision (float32)"
     return ""
@@ -48,11 +48,11 @@ def _are_other_rows(table: Table, limits: Mapping[str, Floats]) -> bool:
 
 
 def _is_cut(table: Table, name: str) -> bool:
-    """Return whether the last digit is cut, not rounded: off by less than a unit, towards 0."""
-    rows, ours = table.misfit[name], table.ours[name]
-    off = ((ours - table.theirs[name]) * np.sign(ours))[rows]
-    unit = table.units[name][rows]
-    return bool(((unit > 0) & (off > 0) & (off < unit * (1 + 1e-9))).all())
+    """Return whether the last digit is cut, or rounded down: off by less than a unit, one way."""
+    rows = table.misfit[name]
+    off = ((table.ours[name] - table.theirs[name]) / table.units[name])[rows]
+    towards_zero = off * np.sign(table.ours[name][rows])
+    return any(bool(((x > 0) & (x < 1 + 1e-9)).all()) for x in (off, towards_zero))
 
 
 @np.errstate(all="ignore")

@@ -21,6 +21,8 @@ class Cause:
         Rows explained, of those that disagree in these results.
     alternatives : tuple of str
         Other mistakes that give the same numbers.
+    names : str
+        What the names stand for with which the edit is described.
 
     Examples
     --------
@@ -35,6 +37,7 @@ class Cause:
     rows: int
     of: int
     alternatives: tuple[str, ...] = ()
+    names: str = ""
 
     @property
     def unexplained(self) -> int:

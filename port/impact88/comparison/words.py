@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 def cause_sentences(cause: "Cause") -> list[str]:
     """Return a cause's sentence, and those of other mistakes with the same numbers."""
     where = f" {cause.where}" if cause.where else ""
-    lines = [f"{cause.edit}{where}"]
+    lines = [f"{cause.edit}{where}", *([f"  with {cause.names}"] if cause.names else [])]
     lines += [f"  or: {other}" for other in cause.alternatives]
     rows = f"explains {cause.rows} of {cause.of} rows that disagree in {', '.join(cause.results)}"
     rest = f"; {cause.unexplained} remain unexplained" if cause.unexplained else ""
@@ -46,10 +46,9 @@ def as_text(comparison: "Comparison") -> str:
         shown = ", ".join(ids[:5]) + ", ..." * (len(ids) > 5)
         lines.append(f"{reason}: {len(ids)} of the vectors ({shown})")
     if kit := comparison.kit:
-        vectors = f"{kit['passed']} of {kit['vectors']} vectors pass"
         lines.append(
-            f"kit {kit['id']}: {vectors}; {comparison.agreeing} agree, the others have no number "
-            "to compare or fail"
+            f"kit {kit['id']}: {kit['passed']} of {kit['vectors']} vectors pass; "
+            f"{comparison.agreeing} agree, the others have no number to compare or fail"
         )
     return "\n".join(lines)
 

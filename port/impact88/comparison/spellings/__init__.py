@@ -10,10 +10,9 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-from ...mechanics.plan import GIVERS
-from ...names import FINAL_VELOCITIES, RESULTS, SCENE
+from ...names import FINAL_VELOCITIES, SCENE
 
-NAMES = ("impulses", "frame", "equations", "bodies", "trial", "ratio")
+NAMES = ("impulses", "frame", "closed", "equations", "bodies", "trial", "engine")
 COLUMNS = tuple(SCENE)
 VELOCITIES = tuple(FINAL_VELOCITIES)
 
@@ -25,6 +24,11 @@ class Statement(NamedTuple):
     text: str
     subject: str
     reads: frozenset[str]
+
+    @property
+    def is_solution(self) -> bool:
+        """Whether it solves equations for unknowns, the targets."""
+        return self.text.startswith("solve(")
 
 
 class Spelling(NamedTuple):
@@ -53,51 +57,27 @@ def names_in(text: str) -> frozenset[str]:
     return frozenset(node.id for node in ast.walk(parse(text)) if isinstance(node, ast.Name))
 
 
-def _read(name: str) -> tuple[list[Statement], tuple[str, ...], tuple[str, ...]]:
-    """Return the statements of a file, its equations and its unknowns."""
+def _read(name: str) -> list[Statement]:
+    """Return the statements of a file."""
     source = resources.files(__name__).joinpath(f"{name}.txt").read_text("utf-8")
     lines = source.splitlines()
-    statements: list[Statement] = []
-    unknowns: tuple[str, ...] = ()
+    statements = []
     for node in ast.parse(source).body:
         assert isinstance(node, ast.Assign)
-        (target,) = node.targets
-        if isinstance(target, ast.Tuple):
-            unknowns = tuple(map(ast.unparse, target.elts))
-            continue
+        target = ast.unparse(node.targets[0]).strip("()")
         text = ast.unparse(node.value)
         subject = lines[(node.end_lineno or 1) - 1].partition("  # ")[2]
-        statements.append(Statement(ast.unparse(target), text, subject, names_in(text)))
-    equations = [s.target for s in statements if s.target.startswith("eq")]
-    return statements, tuple(equations), unknowns
-
-
-def _read_results() -> list[Statement]:
-    """Return the statements of ``results``, and of results that are not there those of their
-    formulas, which must be of one body and time, and take nothing but columns and results."""
-    statements, _, _ = _read("results")
-    written = {"COND", "STATUS", *VELOCITIES, *(statement.target for statement in statements)}
-    for name in (name for name in RESULTS if name not in written):
-        formula = GIVERS[name]
-        is_alone = formula.name == formula.tree.name and {*formula.takes} <= {*SCENE, *RESULTS}
-        assert is_alone, f"{name}: write it in results.txt"
-        for line in formula.tree.body:
-            if isinstance(line, ast.Assign):
-                text = ast.unparse(line.value)
-                target = ast.unparse(line.targets[0])
-                statements.append(Statement(target, text, RESULTS[name].meaning, names_in(text)))
+        statements.append(Statement(target, text, subject, names_in(text)))
     return statements
 
 
 @cache
 def spelling(name: str) -> Spelling:
     """Return the spelling of a name in `NAMES`."""
-    reading, _, _ = _read("reading")
-    own, equations, unknowns = _read(name)
-    results = _read_results()
-    targets = {statement.target for statement in (*reading, *own)}
+    reading, own, results = map(_read, ("reading", name, "results"))
+    targets = {statement.target for statement in own}
     results = [s for s in results if s.target != "MUC" or "muc" in targets]
+    equations = tuple(s.target for s in own if s.target.startswith("eq"))
+    unknowns = tuple(n for s in own if s.is_solution for n in s.target.split(", "))
     statements = (*reading, *own, *results)
-    return Spelling(
-        statements, len(reading), len(reading) + len(own), tuple(equations), tuple(unknowns)
-    )
+    return Spelling(statements, len(reading), len(reading) + len(own), equations, unknowns)
