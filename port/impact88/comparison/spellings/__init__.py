@@ -10,7 +10,8 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-from ...names import FINAL_VELOCITIES, SCENE
+from ...mechanics.plan import GIVERS
+from ...names import FINAL_VELOCITIES, RESULTS, SCENE
 
 NAMES = ("impulses", "frame", "closed", "equations", "bodies", "trial", "engine")
 COLUMNS = tuple(SCENE)
@@ -71,10 +72,23 @@ def _read(name: str) -> list[Statement]:
     return statements
 
 
+def _read_results() -> list[Statement]:
+    """Return the statements of ``results``, and of results that are not there those of their
+    formulas, which take nothing but columns and results."""
+    statements = _read("results")
+    written = {"COND", "STATUS", *VELOCITIES, *(statement.target for statement in statements)}
+    for name in (name for name in RESULTS if name not in written):
+        for line in GIVERS[name].tree.body:
+            if isinstance(line, ast.Assign):
+                text, target = ast.unparse(line.value), ast.unparse(line.targets[0])
+                statements.append(Statement(target, text, RESULTS[name].meaning, names_in(text)))
+    return statements
+
+
 @cache
 def spelling(name: str) -> Spelling:
     """Return the spelling of a name in `NAMES`."""
-    reading, own, results = map(_read, ("reading", name, "results"))
+    reading, own, results = _read("reading"), _read(name), _read_results()
     targets = {statement.target for statement in own}
     results = [s for s in results if s.target != "MUC" or "muc" in targets]
     equations = tuple(s.target for s in own if s.target.startswith("eq"))
