@@ -353,6 +353,12 @@ def test_a_row_lost_or_twice_is_named(start: str) -> None:
     assert single(with_row(start, row(start), other)).verdict is Verdict.DIFFERS
 
 
+def test_another_number_behind_a_damaged_label_is_not_a_doubt() -> None:
+    text = BODY.replace("DA=", "0A=").replace("LOSS", "L0SS").replace("UX=", "UK=")
+    assert single(text.replace("MA= 143.5", "NN- 143.5")).verdict is Verdict.AS_READ
+    assert single(text.replace("MA= 143.5", "NN- 193.5")).verdict is Verdict.INCOMPLETE
+
+
 def test_a_prompt_without_its_reply_is_not_identical() -> None:
     verification = single(PAGE.replace("?14.52,25.15,0", "?"))
     assert verification.verdict is Verdict.AS_READ

@@ -19,6 +19,7 @@ from .numerals import opposite
 from .page import INPUTS, RESULTS
 from .reader import read_printouts
 from .search import printed_fields
+from .words import sentence_of
 
 MAX_UNEXPLAINED = 0.25
 """Fraction of the numbers that differ which a cause may leave."""
@@ -71,8 +72,7 @@ def explain(verification: Verification) -> str:
     if either:
         slips.append(f"one of these is a slip, or edited later: {' or '.join(either)}")
     slips += [
-        f"line {verification.line_of(finding.start)}: {finding.read!r} is where the program "
-        f"prints {finding.printed!r}"
+        f"line {verification.line_of(finding.start)}: {sentence_of(finding)}"
         for finding in verification.findings
         if finding.kind is Kind.LABEL
     ]

@@ -45,11 +45,10 @@ ROW_OF = {name: row for row, text in enumerate(ROWS) for name in re.findall(r"{(
 TITLES = tuple(
     "asterisks"
     if row in ASTERISKS
-    else " ".join(re.findall(r"[A-Za-z]+", re.sub("{.*?}", "", text)))[:24]
+    else " ".join(re.findall(r"[A-Za-z]+", re.sub("{.*?}", "", text)))[:24] or "five angles"
     for row, text in enumerate(ROWS)
 )
 """Names of the rows in words: its labels."""
-TITLES = (*TITLES[:ANGLE_ROW], "five angles", *TITLES[ANGLE_ROW + 1 :])
 
 BLANKS = {
     match[1]: (len(text[: match.start()]) - len(text[: match.start()].rstrip()), len(match[2]))

@@ -18,7 +18,7 @@ from typing import Any
 from ..program.replay import FINAL_SPINS
 from .findings import Finding, Kind, Number, Verdict, Verification, verdict_of
 from .glyphs import LOOKALIKES, Glyph, chars_of, plain_char
-from .numerals import TYPED, as_printed, is_same_value, readings
+from .numerals import PRINTED, TYPED, as_printed, is_same_value, readings
 from .page import (
     ANGLE_ROW,
     ASTERISKS,
@@ -379,7 +379,10 @@ def _is_other_word(finding: Finding) -> bool:
 
 
 def _is_alike(read: str, printed: str) -> bool:
-    """Return True if at least half of a number's characters were read, in order."""
+    """Return True if at least half of a number's characters were read, in order, and not as
+    another number."""
+    if PRINTED.fullmatch(read) and read not in printed and printed not in read:
+        return False
     return 2 * max(_count_same(text, printed) for text in (read, *readings(read))) >= len(printed)
 
 
