@@ -94,7 +94,7 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
         recovered["page"] = tuple(print_page(best.fields, comparison.typed_replies()))
     else:
         due = [name for name in NAMES if name not in FINAL_SPINS or name in reading.slots]
-        comparison = Comparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
+        comparison = PageComparison(reading, dict.fromkeys(due, ""), {}, reading.ending)
         findings = [comparison.number_finding(Kind.UNREAD, name) for name in missing]
         findings += comparison.text_findings()
     verification = Verification(
@@ -113,7 +113,7 @@ def judge_reading(reading: Reading, given: Mapping[str, str], program: Listing) 
 
 
 def _either(
-    findings: Sequence[Finding], comparison: Comparison, scenes: Sequence[Recovered]
+    findings: Sequence[Finding], comparison: PageComparison, scenes: Sequence[Recovered]
 ) -> list[Finding]:
     """Return the findings with the inputs of scenes, each of which alone explains the page: as one
     of several if they were read cleanly and to their ends, else as open."""
@@ -130,13 +130,13 @@ def _either(
 
 def _compare(
     reading: Reading, scene: Recovered, given: Mapping[str, str], program: Listing
-) -> tuple[list[Finding], Comparison]:
+) -> tuple[list[Finding], PageComparison]:
     """Return what was not read as the program prints it for a scene, and the comparison."""
     page = scene.fields, scene.scene, scene.ending
-    comparison = Comparison(reading, *page, given)
+    comparison = PageComparison(reading, *page, given)
     findings = comparison.findings()
     if layout := program.layout(scene.scene):
-        own_findings = {*map(_without_place, Comparison(layout, *page).findings())}
+        own_findings = {*map(_without_place, PageComparison(layout, *page).findings())}
         findings = [finding for finding in findings if _without_place(finding) not in own_findings]
     return comparison.settle(findings), comparison
 
@@ -146,8 +146,8 @@ def _without_place(finding: Finding) -> tuple[Kind, str, str]:
     return finding.kind, finding.name, "".join(finding.read.upper().split())
 
 
-class Comparison:
-    """Comparison of a reading with the page of a scene.
+class PageComparison:
+    """PageComparison of a reading with the page of a scene.
 
     Parameters
     ----------
