@@ -147,7 +147,7 @@ def _without_place(finding: Finding) -> tuple[Kind, str, str]:
 
 
 class PageComparison:
-    """PageComparison of a reading with the page of a scene.
+    """Comparison of a reading with the page of a scene.
 
     Parameters
     ----------
