@@ -13,7 +13,7 @@ from ..apple.applesoft.real import divide, multiply, rounded, to_stored
 from .costs import ALIKE, SLIGHT
 from .glyphs import LOOKALIKES
 
-PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,9})(?:E[-+]?[0-9]{1,2})?")
+PRINTED = re.compile(r"-?(?:[0-9]{1,9}(?:\.[0-9]{1,9})?|\.[0-9]{1,10})(?:E[-+]?[0-9]{1,2})?")
 """A number as Applesoft prints it."""
 TYPED = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:E[-+]?[0-9]{1,2})?")
 """A number as it can be typed."""
