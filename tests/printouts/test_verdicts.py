@@ -173,7 +173,7 @@ def test_inputs_read_cleanly_are_the_scene_where_no_single_one_explains_the_resu
     assert {finding.name for finding in verification.findings} <= {*verification.numbers} - {
         *impact88.sample(1)
     }
-    assert verification.explanation.startswith("the results were not computed from these inputs")
+    assert verification.explanation.startswith("the numbers listed were not computed from these inputs")
     one = single(text.replace("IA= 3278", "IA= 3728"))
     assert one.scene["DA"] == "7.59"
 
@@ -673,7 +673,7 @@ def results(page: str) -> str:
     ("text", "explanation"),
     [
         (BODY.replace("3728", "3778"), "line 1: IA 3778 is a slip, or edited later"),
-        (BODY.replace("3.449", "3.559"), "line 18: VAY 3.559 alone is not"),
+        (BODY.replace("3.449", "3.559"), "line 18: VAY 3.559 is not"),
         (
             BODY.replace(results(BODY), results(impact88.run(OTHER_MU).page)),
             "the other sign of MU (line 400)",

@@ -32,8 +32,8 @@ SINGLE_ERROR = 1e-5
 DOUBLE = "computed in double precision, not by an Apple"
 SINGLE = "computed in single precision, not by an Apple"
 NOT_COMPUTED = (
-    "the results were not computed from these inputs; no other value of one input was found that "
-    "explains them all (slips, and values no longer than those read, were tried)"
+    "the numbers listed were not computed from these inputs; no other value of one input was found "
+    "that explains them all (slips, and values no longer than those read, were tried)"
 )
 Scene = Mapping[str, str]
 
@@ -84,7 +84,7 @@ def _slip(verification: Verification, finding: Finding) -> str:
     line = verification.line_of(finding.start)
     if finding.name not in INPUTS:
         return (
-            f"line {line}: {finding.name} {finding.read} alone is not what the program prints for "
+            f"line {line}: {finding.name} {finding.read} is not what the program prints for "
             f"the inputs ({finding.printed}); a slip, or edited later"
         )
     if finding.name == "MUP" and finding.read == opposite(finding.printed):

@@ -170,7 +170,10 @@ class Reading:
         over that of most numbers of the page; infinite at the edges of a line.
 
         Where there are more, the number may have lost its beginning, or its end."""
-        text = f"{self.text}\n"
+        chars = [*self.text, "\n"]
+        for glyph in chain.from_iterable(self.foreign):  # beside a note is an edge
+            chars[glyph.offset] = "\n"
+        text = "".join(chars)
         extra = {}
         for name, slot in self.slots.items():
             before, after = text[: slot.glyphs[0].offset], text[slot.glyphs[-1].offset + 1 :]

@@ -208,7 +208,7 @@ class PageComparison:
         start, stop = self.reading.span()
         start = max((place[1] for j, place in self.places.items() if j < cell), default=start)
         stop = min((place[0] for j, place in self.places.items() if j > cell), default=stop)
-        return Finding(kind, name, min(start, stop), max(start, stop), "", printed)
+        return Finding(kind, name, start, max(start, stop), "", printed)
 
     def number_finding(self, kind: Kind, name: str) -> Finding:
         """Return a finding at the place of a number."""
@@ -248,7 +248,7 @@ class PageComparison:
             printed = "".join(CELLS[j].char for j in word)
             if chars_of(glyphs) != printed:
                 kind = Kind.MISREAD if glyphs else Kind.LOST
-                for run in [run for run in foreign if _touches(run, glyphs)]:
+                for run in [run for run in foreign if glyphs and _touches(run, glyphs)]:
                     glyphs = sorted([*glyphs, *run], key=lambda glyph: glyph.offset)
                     foreign.remove(run)
                 findings.append(self.finding(kind, CELLS[cell].name, glyphs, printed, cell))
@@ -304,16 +304,18 @@ class PageComparison:
 
     def _repeated_findings(self) -> Iterator[Finding]:
         """Yield the rows that were printed twice, or out of order, and the numbers that were
-        printed once more, cleanly as another."""
+        printed once more, cleanly as another: not read if several rows were, which may be those of
+        another printout."""
         rows = {ROW_OF[name] for name, _ in self.reading.repeated}
         for row, glyph in self.reading.disorder:
             kind = Kind.ROW_TWICE if row in rows else Kind.DISORDER
             yield self.finding(kind, TITLES[row], [glyph], TITLES[row], 0)
+        kind = Kind.NUMBER if len(rows) == 1 else Kind.UNREAD
         for name, slot in self.reading.repeated:
             printed = self.fields.get(name, "")
             is_sure = printed and slot.is_clean and slot.is_bounded
             if is_sure and as_printed(slot.text) != printed:
-                yield self.finding(Kind.NUMBER, name, slot.glyphs, printed, 0)
+                yield self.finding(kind, name, slot.glyphs, printed, 0)
 
     def settle(self, findings: Sequence[Finding]) -> list[Finding]:
         """Return the findings, with numbers that differ left open where they prove nothing.
@@ -333,13 +335,14 @@ class PageComparison:
         is_machine_read = self.reading.is_machine_read
         numbers = [finding for finding in findings if finding.kind is Kind.NUMBER]
         unread = [finding for finding in findings if finding.kind is Kind.UNREAD]
-        unsure = {f.name for f in findings if f.kind is Kind.DOUBT and self._is_unsure(f.name)}
+        unsure = {
+            f.name: f.read != f.printed
+            for f in findings
+            if f.kind is Kind.DOUBT and self._is_unsure(f.name)
+        }
         is_open = bool(is_machine_read or unsure or unread)
         is_open &= len([*numbers, *unread]) > MAX_ALTERED
-        is_open |= not is_machine_read and any(
-            self.reading.slots[name].is_torn or len(self.reading.readings(name)) > 1
-            for name in unsure
-        )
+        is_open |= not is_machine_read and any(unsure.values())
         is_open |= any(f.name in INPUTS for f in unread) or any(map(self.reading.is_apart, INPUTS))
         is_open |= any(f.read and self.reading.extra_blanks[f.name][1] == math.inf for f in unread)
         swaps = [*map(_swap, numbers)]
@@ -355,8 +358,6 @@ class PageComparison:
 
 def _touches(run: Sequence[Glyph], word: Sequence[Glyph]) -> bool:
     """Return True for glyphs right before or after those of a word."""
-    if not word:
-        return False
     return 1 in (word[0].offset - run[-1].offset, run[0].offset - word[-1].offset)
 
 

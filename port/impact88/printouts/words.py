@@ -69,9 +69,11 @@ def write(
         Lines.
     """
     name = "standard input" if file == "-" else file
-    line = verification.line_of(verification.span[0])
-    lines = [f"{name}, printout {number} (line {line}): {TITLES[verification.verdict]}"]
-    lines.append("  " + _summary(verification))
+    lines = [
+        f"{name}, printout {number} (line {verification.line_of(verification.span[0])}): "
+        f"{TITLES[verification.verdict]}",
+        f"  {_summary(verification)}",
+    ]
     kinds = {finding.kind for finding in verification.findings}
     if verification.verdict is Verdict.DIFFERS and kinds & {Kind.MISREAD, Kind.DOUBT}:
         lines.append("  " + MACHINE_READ)
@@ -104,8 +106,7 @@ def _summary(verification: Verification) -> str:
 
 def _findings(verification: Verification) -> Iterator[str]:
     """Yield a sentence for each finding, the gravest first."""
-    order = [*Kind]
-    for finding in sorted(verification.findings, key=lambda f: order.index(f.kind)):
+    for finding in sorted(verification.findings, key=lambda f: [*Kind].index(f.kind)):
         yield f"line {verification.line_of(finding.start)}: {sentence_of(finding)}"
 
 
@@ -124,7 +125,7 @@ def sentence_of(finding: Finding) -> str:
     """
     read = " ".join(finding.read.split())
     return SENTENCES[finding.kind].format(
-        name=finding.name.replace("REPLY_", "the reply for M") or "the message",
+        name=finding.name.replace("REPLY_", "the reply for M"),
         read=repr(read[:LONGEST]),
         printed=finding.printed or "nothing",
         instead=f" ({read[:LONGEST]!r})" if read else "",
