@@ -18,9 +18,7 @@ from .mistakes import MAX_SAMPLE, columns_of, find_causes
 from .numbers import spread
 from .reading import read_table, scene_columns
 from .spellings import COMPARED
-from .types import Cause, Comparison, Disagreement
-
-MAX_ROWS_LISTED = 1000
+from .types import MAX_ROWS_LISTED, Cause, Comparison, Disagreement
 
 
 @np.errstate(all="ignore")

@@ -13,7 +13,7 @@ from .mutants import describe_names
 from .numbers import spread
 from .rows import mistake_of_table
 from .spellings import COLUMNS, VELOCITIES
-from .types import Cause
+from .types import MAX_ROWS_LISTED, Cause
 
 MAX_SAMPLE = 80  # rows of each kind in a search, and as many kept out of it
 ROUNDINGS = 30.0  # bounds by which a mistake's numbers may be off
@@ -152,20 +152,21 @@ class Diagnosis:
         ``judged``: the results that it must give; ``explained``: those that it is the cause of.
         """
         wrong = np.flatnonzero(self.table.differing(judged))
-        count = 0
+        rest: list[int] = []
         for start in range(0, wrong.size, BLOCK):
-            sample = self._sample(wrong[start : start + BLOCK], judged)
-            count += int(candidate.gives(sample).sum())
+            rows = wrong[start : start + BLOCK]
+            rest += (rows[~candidate.gives(self._sample(rows, judged))] + 1).tolist()
         names = tuple(n for n in self.table.disagreeing if n in explained)
         where = str(candidate.condition or "")
         return Cause(
             candidate.text,
             where,
             names,
-            count,
+            wrong.size - len(rest),
             wrong.size,
             candidate.alternatives,
             describe_names(candidate.edits[0], candidate.name),
+            tuple(rest[:MAX_ROWS_LISTED]),
         )
 
 
