@@ -11,11 +11,11 @@ from otherprograms import answers
 
 import impact88
 from impact88.comparison import spellings
-from impact88.comparison.agreement import COMPARED, elimination_bounds, reference
+from impact88.comparison.agreement import elimination_bounds, reference
 from impact88.comparison.evaluation import Program
 from impact88.comparison.kit import frozen_vectors
 from impact88.comparison.numbers import numbers, units
-from impact88.comparison.spellings import COLUMNS, VELOCITIES
+from impact88.comparison.spellings import COLUMNS, COMPARED, VELOCITIES
 
 VECTORS = [vector for vector in frozen_vectors() if vector["class"] != "failure"]
 TEXTS = [vector["scene"] for vector in VECTORS]

@@ -97,6 +97,13 @@ class TestMistakes:
         (cause,) = impact88.compare({**SCENE, **texts}).causes
         assert cause.edit == edit
 
+    def test_the_first_rows_left_unexplained_are_listed(self) -> None:
+        theirs = impact88.solve({**SCENE, "UX": -SCENE["UX"]}, VELOCITIES)
+        theirs["VAY"][[7, 70, 71, 72, 150, 151]] += 3
+        comparison = impact88.compare({**SCENE, **theirs})
+        assert comparison.causes[0].unexplained_rows == (8, 71, 72, 73, 151, 152)
+        assert "6 remain unexplained (row 8, 71, 72, 73, 151, ...)" in str(comparison)
+
     @long
     def test_a_limit_is_named_with_its_number(self) -> None:
         scene = {**SCENE, "MU": np.where(SCENE["MU"] == -10, -10, np.minimum(SCENE["MU"], 0.6))}

@@ -17,8 +17,7 @@ import impact88
 from impact88.apple import captured
 from impact88.cases import Case, View
 from impact88.comparison import kit, oracle, selfcheck, words
-from impact88.comparison.agreement import COMPARED
-from impact88.comparison.spellings import VELOCITIES
+from impact88.comparison.spellings import COMPARED, VELOCITIES
 from impact88.tables.solving import Solver
 
 US_ROW = ".1,.5,-.8,7,4,-30,-20,-40,0,60,4600,3100,3700,2000,-20,0,0,10,17,0,6"

@@ -15,7 +15,8 @@ COMMANDS = {
     "bench": "measure run time against error on this computer",
 }
 """One line of help for each command, in the order of the overview. `impact88.cli.NAME` has the
-command's help as its docstring, its ``OPTIONS``, and its function ``main``."""
+command's help as its docstring, its ``OPTIONS``, and its function ``main``, which returns whether
+the result is adverse, or another exit status."""
 
 GONE = {
     "bounds": "impact88 solve FILE.toml, which gives intervals where the file has tolerances",

@@ -6,15 +6,16 @@ from collections.abc import Iterator
 
 from ..layout import paragraph, table
 from ..report.answers import Answer
+from .options import Args
 from .output import show
 
 LABEL = 10  # columns of the words at the left
 
 
-def show_answer(answer: Answer, is_json: bool) -> int:
-    """Print an answer, and return the exit status."""
-    show(is_json, "answer", answer.as_json(), answer_lines(answer))
-    return int(not answer.possible)
+def show_answer(answer: Answer, args: Args) -> bool:
+    """Print an answer, and return whether it is that no impact is possible."""
+    show(args, "answer", answer.as_json(), answer_lines(answer))
+    return not answer.possible
 
 
 def answer_lines(answer: Answer) -> Iterator[str]:

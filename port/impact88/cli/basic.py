@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import signal
 import sys
-from types import FrameType
 
 from ..apple.applesoft.console import EndOfInput
 from ..apple.applesoft.errorcodes import ApplesoftError
@@ -20,16 +19,12 @@ from ..apple.emulator.emulator import Applesoft
 from ..errors import UserError, note
 from ..files import display_name, packaged_bytes, read_bytes, typed_line
 from ..program.run import page
-from .options import Args, InputPath, option
+from .options import Args, input_file
 from .output import say
 
 LISTING = "impact.bas"
 MAX_PROGRAM_BYTES = 1_000_000  # 48K hold some 50,000
-OPTIONS = (
-    option(
-        "program", nargs="?", type=InputPath, metavar="FILE.bas", help="run it; - is standard input"
-    ),
-)
+OPTIONS = (input_file("program", "FILE.bas", "run it; - is standard input", nargs="?"),)
 
 
 class Terminal:
@@ -54,7 +49,7 @@ class Terminal:
         self.line = line or ""
         return line
 
-    def interrupt(self, number: int, frame: FrameType | None) -> None:
+    def interrupt(self, *_: object) -> None:
         """Break the program between two statements."""
         self.apple.machine.interrupted = True
 
@@ -101,8 +96,8 @@ def main(args: Args) -> int:
         say("basic", apple.machine.ignored)
 
 
-def _run(apple: Applesoft) -> int:
-    """Run the program that is loaded, and return the exit status."""
+def _run(apple: Applesoft) -> bool:
+    """Run the program that is loaded, and return whether it ended with an error."""
     try:
         error = apple.run()
     except EndOfInput:
@@ -114,4 +109,4 @@ def _run(apple: Applesoft) -> int:
         print()  # the ROM leaves the cursor after the message
     if apple.machine.broken:
         raise KeyboardInterrupt
-    return int(error is not None)
+    return error is not None

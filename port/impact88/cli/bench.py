@@ -23,4 +23,4 @@ def main(args: Args) -> None:
     computer = bench.computer()
     rows = bench.measure(show_progress)
     record = {"computer": computer, "measurements": [row._asdict() for row in rows]}
-    show(args.json, "bench", record, [bench.markdown(rows, computer)])
+    show(args, "bench", record, [bench.markdown(rows, computer)])

@@ -22,9 +22,8 @@ from typing import Any
 from ..cases.case import Case
 from ..errors import UserError
 from ..report.answers import Answer, forward_answer
-from . import options
 from .answers import show_answer
-from .options import choice, flag, option
+from .options import CASE, JSON, OUTPUT, Args, case_of, choice, flag, option
 from .output import show
 
 EQUATION_19 = (
@@ -60,13 +59,14 @@ def _delta_v(case: Case, values: Values) -> Answer:
     if not 0 <= loss <= 100:
         raise UserError(f"a loss of {loss:.4g} percent; expected 0 to 100")
     changes = delta_v({**values, "LOSS": loss})
-    results = {"LOSS": loss, **{name: float(x) for name, x in changes.items()}}
-    question = "velocity changes from the energy lost"
-    return forward_answer(case, question, results, remarks=EQUATION_19)
+    results = {name: float(x) for name, x in {"LOSS": loss, **changes}.items()}
+    return forward_answer(
+        case, "velocity changes from the energy lost", results, remarks=EQUATION_19
+    )
 
 
-def _collision_tables(args: options.Args) -> int:
-    """Print tables of the staged collisions."""
+def _collision_tables(args: Args) -> bool:
+    """Print tables of the staged collisions, and return whether a number is not explained."""
     from ..chapter import staged, validation, words
 
     cells = staged.comparison()
@@ -78,17 +78,17 @@ def _collision_tables(args: options.Args) -> int:
         "validation": [check._asdict() for check in validation.checks()],
     }
     lines = words.validation_lines() if args.validation else words.comparison_lines()
-    show(args.json, "chapter", record, words.table_lines(int(args.table)) if args.table else lines)
-    return int(any(cell.explanation == "not explained" for cell in cells))
+    show(args, "chapter", record, words.table_lines(int(args.table)) if args.table else lines)
+    return any(cell.explanation == "not explained" for cell in cells)
 
 
-def _example(args: options.Args) -> int:
-    """Print the example of Section VII."""
+def _example(args: Args) -> bool:
+    """Print the example of Section VII, and return whether a number disagrees."""
     from ..chapter.example import steps
     from ..chapter.words import example_lines
 
-    show(args.json, "chapter", {"problem": "example", "steps": steps()}, example_lines())
-    return int(any(number.agrees is False for step in steps() for number in step.numbers))
+    show(args, "chapter", {"problem": "example", "steps": steps()}, example_lines())
+    return any(number.agrees is False for step in steps() for number in step.numbers)
 
 
 IMPACTS = {"colinear": _colinear, "delta-v": _delta_v}
@@ -96,18 +96,18 @@ IMPACTS = {"colinear": _colinear, "delta-v": _delta_v}
 TABLES = {"staged": _collision_tables, "example": _example}
 OPTIONS = (
     option("problem", choices=(*IMPACTS, *TABLES), help="the problem, see above"),
-    *options.CASE,
+    *CASE,
     choice("--table", ("1", "2"), "staged: a table as emended"),
     flag("--validation", "staged: crash tests published since, recomputed"),
-    options.JSON,
-    options.OUTPUT,
+    JSON,
+    OUTPUT,
 )
 
 
-def main(args: options.Args) -> int:
+def main(args: Args) -> bool:
     """Solve a problem of the chapter."""
     if args.problem in TABLES:
         return TABLES[args.problem](args)
-    case = options.case_of(args)
+    case = case_of(args)
     values = {name: amount.value for name, amount in case.entries.items()}
-    return show_answer(IMPACTS[args.problem](case, values), args.json)
+    return show_answer(IMPACTS[args.problem](case, values), args)

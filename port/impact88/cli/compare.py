@@ -14,22 +14,32 @@ exit status: 0 every result agrees; 1 something disagrees or was not compared; 2
 
 from __future__ import annotations
 
-from . import options
-from .options import option
+from .options import (
+    JSON,
+    OUTPUT,
+    UNITS,
+    Args,
+    OutputPath,
+    changes_of,
+    input_file,
+    option,
+    printing_to,
+    texts,
+)
 from .output import show
 
 OPTIONS = (
-    option("theirs", type=options.InputPath, metavar="TABLE", help="their results"),
-    options.texts("--set", "NAME=VALUE", "a value of all rows"),
-    options.UNITS,
+    input_file("theirs", "TABLE", "their results"),
+    texts("--set", "NAME=VALUE", "a value of all rows"),
+    UNITS,
     option("--kit", metavar="ID", help="judge answers to this kit: 1988.1"),
-    option("--junit", type=options.OutputPath, metavar="FILE", help="write a JUnit report"),
-    options.JSON,
-    options.OUTPUT,
+    option("--junit", type=OutputPath, metavar="FILE", help="write a JUnit report"),
+    JSON,
+    OUTPUT,
 )
 
 
-def main(args: options.Args) -> int:
+def main(args: Args) -> bool:
     """Compare a table with the reference."""
     from ..comparison.compare import compare
     from ..comparison.words import as_json, as_junit, as_text
@@ -37,11 +47,11 @@ def main(args: options.Args) -> int:
     comparison = compare(
         args.theirs,
         kit=args.kit,
-        values=options.changes_of(args),
+        values=changes_of(args),
         units=args.units,
     )
     if args.junit:
-        with options.printing_to(args.junit):
+        with printing_to(args.junit):
             print(as_junit(comparison, args.theirs), end="")
-    show(args.json, "compare", as_json(comparison), [as_text(comparison)])
-    return int(not comparison.passed)
+    show(args, "compare", as_json(comparison), [as_text(comparison)])
+    return not comparison.passed

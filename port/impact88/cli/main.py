@@ -77,9 +77,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return status
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:
-        _discard_output()
-        return BROKEN_PIPE
     except UserError as error:
         note(command, str(error))
         return UNUSABLE
@@ -87,8 +84,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         note(command, "the input is too large or nested too deeply; expected a smaller one")
         return UNUSABLE
     except OSError as error:  # those of files are UserErrors
-        note(command, f"standard output: {error.strerror or error}")
         _discard_output()
+        if isinstance(error, BrokenPipeError):
+            return BROKEN_PIPE
+        note(command, f"standard output: {error.strerror or error}")
         return UNUSABLE
     except Exception as error:
         if os.environ.get("IMPACT88_DEBUG") == "1":

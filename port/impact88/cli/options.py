@@ -51,14 +51,12 @@ def texts(name: str, metavar: str, meaning: str) -> Option:
     return option(name, action="append", default=[], metavar=metavar, help=help_text)
 
 
-def input_file(name: str, metavar: str, meaning: str) -> Option:
-    """Return an option that takes a file to read."""
-    return option(name, type=InputPath, metavar=metavar, help=meaning)
+def input_file(name: str, metavar: str, meaning: str, **keywords: Any) -> Option:
+    """Return an option or a positional argument that names a file to read."""
+    return option(name, type=InputPath, metavar=metavar, help=meaning, **keywords)
 
 
-FILE = option(
-    "file", nargs="?", type=InputPath, metavar="FILE", help="the collision; - is standard input"
-)
+FILE = input_file("file", "FILE", "the collision; - is standard input", nargs="?")
 SAMPLE = choice("--sample", ("1", "2", "3"), "the scene of a published run")
 SET = texts("--set", "NAME=VALUE", "change an entry; an empty VALUE removes it")
 UNITS = choice("--units", ("us", "chapter", "metric", "si"), "units of numbers without one")
@@ -79,10 +77,12 @@ it itself."""
 
 def check_files(args: Args) -> None:
     """Raise UserError if a file to write is also read, or written twice."""
-    inputs = ["-"]
-    for value in vars(args).values():
-        paths = value if isinstance(value, list) else [value]
-        inputs += [path for path in paths if isinstance(path, InputPath)]
+    inputs = [
+        path
+        for value in vars(args).values()
+        for path in (value if isinstance(value, list) else [value])
+        if isinstance(path, InputPath)
+    ]
     outputs = {f"--{n}": path for n, path in vars(args).items() if isinstance(path, OutputPath)}
     check_apart(inputs, outputs)
 
@@ -97,11 +97,11 @@ def printing_to(path: str) -> Iterator[None]:
         yield
 
 
-def names_of(texts: Sequence[str], allowed: Collection[str], name: str) -> tuple[str, ...]:
-    """Return the names that an option gives. Raises UserError for another name."""
-    words = split_names(",".join(texts).upper())
-    check_names(words, allowed, "result", name)
-    return tuple(words)
+def results_of(args: Args, allowed: Collection[str]) -> tuple[str, ...]:
+    """Return the names of ``--results``. Raises UserError for another name."""
+    names = split_names(",".join(args.results).upper())
+    check_names(names, allowed, "result", "--results")
+    return tuple(names)
 
 
 def pairs_of(texts: Sequence[str], name: str, expected: str) -> dict[str, str]:

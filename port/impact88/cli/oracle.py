@@ -15,40 +15,38 @@ from __future__ import annotations
 
 from ..errors import UserError, library
 from ..files import open_bytes
-from .options import OUTPUT, Args, InputPath, option
+from .options import OUTPUT, Args, input_file, option
 from .output import to_json
 
 OPTIONS = (
-    option(
+    input_file(
         "scenes",
+        "SCENES.jsonl",
+        "scenes, one JSON object a line (default: standard input)",
         nargs="?",
-        default=InputPath("-"),
-        type=InputPath,
-        metavar="SCENES.jsonl",
-        help="scenes, one JSON object a line (default: standard input)",
+        default="-",
     ),
     option("--kit", metavar="FOLDER", help="write the kit into a folder"),
     OUTPUT,
 )
 
 
-def main(args: Args) -> int:
+def main(args: Args) -> bool:
     """Answer scenes, or write the kit."""
     if args.kit:
         from ..comparison.kit import write_kit
 
         print("\n".join(write_kit(args.kit)))
-        return 0
+        return False
     from ..comparison.oracle import answer_lines
 
     library("mpmath", "oracle", "the reference of 30 digits")
-    answers = failures = 0
+    failed = set()  # whether a line could not be used
     with open_bytes(args.scenes) as file:
         lines = (line.decode("utf-8-sig", "replace") for line in file)
         for answer in answer_lines(lines):
-            failures += "error" in answer
-            answers += 1
+            failed.add("error" in answer)
             print(to_json(answer), flush=True)  # a program may ask line by line
-    if answers == failures:
+    if False not in failed:
         raise UserError('no line can be used; expected lines such as {"id": 1, "scene": {...}}')
-    return int(failures > 0)
+    return True in failed

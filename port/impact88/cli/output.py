@@ -9,6 +9,7 @@ from typing import Any
 
 from ..errors import note
 from ..version import __version__
+from .options import Args
 
 FORMS = {
     "run": 1,
@@ -22,9 +23,9 @@ FORMS = {
 """Version of each form of JSON. It rises where a field is removed, renamed or changes meaning."""
 
 
-def show(is_json: bool, form: str, record: Mapping[str, Any], lines: Iterable[str]) -> None:
-    """Print a result: as JSON, an object with the name and version of its form, or as lines."""
-    if is_json:
+def show(args: Args, form: str, record: Mapping[str, Any], lines: Iterable[str]) -> None:
+    """Print a result: as lines, or for ``--json`` as an object with its form's name and version."""
+    if args.json:
         head = {"schema": f"impact88/{form}/{FORMS[form]}", "version": __version__}
         print(to_json({**head, **record}), flush=True)
     else:

@@ -18,11 +18,11 @@ OPTIONS = (*CASE, OUTPUT)
 WRITES = True
 
 
-def main(args: Args) -> int:
+def main(args: Args) -> bool:
     """Write a page or a drawing."""
     from ..report.answers import ask
     from ..report.casepage import write
 
     answer = ask(case_of(args))
     write(answer, args.output)
-    return int(not answer.possible)
+    return not answer.possible

@@ -31,20 +31,20 @@ OPTIONS = (
 )
 
 
-def main(args: Args) -> int:
+def main(args: Args) -> bool:
     """Run the program."""
     arithmetic = args.arithmetic or "applesoft"
     if args.file or args.sample or args.set or args.json:
         record = run(_scene(args), arithmetic)
         if args.json:
-            show(True, "run", {**record._asdict(), "floats": record.floats}, ())
+            show(args, "run", {**record._asdict(), "floats": record.floats}, ())
         else:
             sys.stdout.write(record.page)
     else:
         record = _ask(arithmetic)
     if record.error and sys.stdout.isatty():
         print()  # the ROM leaves the cursor after the message
-    return int(bool(record.error))
+    return bool(record.error)
 
 
 def _scene(args: Args) -> Scene:

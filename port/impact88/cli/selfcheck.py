@@ -15,11 +15,11 @@ from .output import show
 OPTIONS = (JSON, OUTPUT)
 
 
-def main(args: Args) -> int:
+def main(args: Args) -> bool:
     """Check the installation."""
     from ..comparison import selfcheck
 
     results = list(selfcheck.checks())
     record = selfcheck.record(results)
-    show(args.json, "selfcheck", record, [selfcheck.as_text(results)])
-    return int(not record["passed"])
+    show(args, "selfcheck", record, [selfcheck.as_text(results)])
+    return not record["passed"]

@@ -30,9 +30,9 @@ from .options import (
     choice,
     flag,
     input_file,
-    names_of,
     pairs_of,
     printing_to,
+    results_of,
     texts,
 )
 from .output import say, show_progress
@@ -53,7 +53,7 @@ OPTIONS = (
 )
 
 
-def main(args: Args) -> int:
+def main(args: Args) -> bool:
     """Answer a collision, or solve a table."""
     is_table = bool(args.file) and not args.file.lower().endswith(".toml")
     if is_table or args.sweep or args.arithmetic or args.output.lower().endswith(TABLES):
@@ -61,13 +61,13 @@ def main(args: Args) -> int:
     from ..report.answers import ALL, ask
     from .answers import show_answer
 
-    names = names_of(args.results, ALL, "--results")
+    names = results_of(args, ALL)
     answer = ask(case_of(args), ALL if args.full else names)
     with printing_to(args.output):
-        return show_answer(answer, args.json)
+        return show_answer(answer, args)
 
 
-def _solve_table(args: Args, is_table: bool) -> int:
+def _solve_table(args: Args, is_table: bool) -> bool:
     """Solve each row of a table, or of a case that is swept."""
     from ..tables.solving import Solver
     from ..tables.sweeping import sweep_table
@@ -84,7 +84,7 @@ def _solve_table(args: Args, is_table: bool) -> int:
     solver = Solver(
         table if is_table else sweep_table(case, ranges),
         case,
-        names_of(args.results, RESULTS, "--results"),
+        results_of(args, RESULTS),
         replaced=changes_of(args) if is_table else (),
         arithmetic=args.arithmetic or "float64",
         results_only=args.results_only,
@@ -92,4 +92,4 @@ def _solve_table(args: Args, is_table: bool) -> int:
     solver.write(args.output, show_progress)
     remarks = dict.fromkeys([*case.remarks, *solver.remarks()])
     say("solve", [*remarks, *solver.listed])
-    return int(bool(solver.bad or solver.ended))
+    return bool(solver.bad or solver.ended)

@@ -22,44 +22,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from glob import glob
 
+from ..cases.case import Case
 from ..errors import UserError, note
 from ..files import display_name, read_bytes
 from ..printouts import Verdict, words
 from ..report.exhibits import Exhibit, examine
-from . import options
-from .options import flag, input_file, option
+from .options import JSON, OUTPUT, Args, OutputPath, flag, input_file, option, printing_to
 from .output import show
 
 UNUSABLE = 2  # exit status
 HEADINGS = ("case", "examiner", "date")
 """Headings of the report, as options."""
 OPTIONS = (
-    option(
-        "printouts",
-        nargs="+",
-        type=options.InputPath,
-        metavar="FILE",
-        help="text, picture or PDF",
-    ),
+    input_file("printouts", "FILE", "text, picture or PDF", nargs="+"),
     flag("--brief", "verdicts and findings alone"),
     input_file("--scene", "FILE.toml", "the inputs, for a page with results only"),
     input_file("--listing", "FILE.bas", "the office's own copy of the listing"),
-    option(
-        "--report", type=options.OutputPath, metavar="FILE.html", help="write a page for the case"
-    ),
+    option("--report", type=OutputPath, metavar="FILE.html", help="write a page for the case"),
     *(option(f"--{name}", default="", help="heading of that page") for name in HEADINGS),
-    options.JSON,
-    options.OUTPUT,
+    JSON,
+    OUTPUT,
 )
 
 
-def main(args: options.Args) -> int:
+def main(args: Args) -> int:
     """Verify printouts."""
-    scene = None
-    if args.scene:
-        from ..cases.case import Case
-
-        scene = Case.load(args.scene).texts
+    scene = Case.load(args.scene).texts if args.scene else None
     exhibits: list[Exhibit] = []
     is_unusable = False
     for path in (path for name in args.printouts for path in sorted(glob(name)) or [name]):
@@ -73,13 +61,13 @@ def main(args: options.Args) -> int:
     if args.report:
         from ..report.casepage import verification_page
 
-        with options.printing_to(args.report):
+        with printing_to(args.report):
             print(verification_page(exhibits, vars(args)), end="")
-    return int(any(item.result.verdict is not Verdict.IDENTICAL for item in exhibits))
+    return any(item.result.verdict is not Verdict.IDENTICAL for item in exhibits)
 
 
 def _verify_file(
-    args: options.Args, name: str, data: bytes, scene: Mapping[str, str] | None
+    args: Args, name: str, data: bytes, scene: Mapping[str, str] | None
 ) -> list[Exhibit]:
     """Print and return the printouts of a file."""
     exhibits = examine(name, data, scene, args.listing or "")
@@ -91,5 +79,5 @@ def _verify_file(
         if exhibit.page:
             lines += [f"  {remark}" for remark in exhibit.page.remarks]
             record |= exhibit.page.places()
-        show(args.json, "verify", record, [*lines, ""])
+        show(args, "verify", record, [*lines, ""])
     return exhibits

@@ -28,7 +28,7 @@ from ..names import (
     VELOCITY,
 )
 from .evaluation import Floats, Program
-from .spellings import COLUMNS, VELOCITIES
+from .spellings import COLUMNS, COMPARED, VELOCITIES
 
 Bools = NDArray[np.bool_]
 SAFETY = 4.0  # roundings of a result's own operations, and those that a spelling orders otherwise
@@ -42,7 +42,6 @@ EXACT = ("degree", "point", "pivot", "stick")
 """Statements without rounding of their own: pi / 180 rounds with the angles."""
 IMPULSES = {"PN": "Pn", "PT": "Pt", "PM": "Pm"}
 """Results that follow from the velocities, and the impulses that the velocities follow from."""
-COMPARED = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
 NO_ANSWER_NEEDED = 32 | 64  # bits of STATUS: nearly singular, not finite
 
 

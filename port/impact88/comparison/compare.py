@@ -1,6 +1,6 @@
 """Compare another program's results with the reference, and name the mistake."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,16 +11,14 @@ from ..cases.units import View
 from ..errors import UserError
 from ..names import SCENE
 from ..tables.solving import read_headings
-from .agreement import COMPARED
 from .conditions import find_condition, quantities_of
 from .grading import Table
 from .kit import HEAD, REMARKS, Answers
 from .mistakes import MAX_SAMPLE, columns_of, find_causes
 from .numbers import spread
 from .reading import read_table, scene_columns
-from .types import Cause, Comparison, Disagreement
-
-MAX_ROWS_LISTED = 1000
+from .spellings import COMPARED
+from .types import MAX_ROWS_LISTED, Cause, Comparison, Disagreement
 
 
 @np.errstate(all="ignore")
@@ -93,19 +91,19 @@ def compare(
         )
     scene = answers.scene if answers else scene_columns(columns, factors, case.numbers)
     table = Table(scene, answers.results if answers else columns, factors)
-    comparison = _comparison(table, causes)
+    comparison = _comparison(table, causes, others)
     if answers:
         verdict = answers.verdict(table.wrong)
         passed = not (verdict["failed"] or verdict["stray"])
         comparison = replace(comparison, passed=passed, kit=verdict)
-    if others:
-        note = f"columns not compared: {' '.join(others)}"
-        comparison = replace(comparison, notes=(*comparison.notes, note))
     return comparison
 
 
-def _comparison(table: Table, causes: bool) -> Comparison:
-    """Return the comparison of a table, with the causes where they are wanted."""
+def _comparison(table: Table, causes: bool, others: Sequence[str]) -> Comparison:
+    """Return the comparison of a table, with the causes where they are wanted.
+
+    ``others``: columns that are not compared.
+    """
     places = np.flatnonzero(table.wrong)
     is_complete = table.agreeing.any() and not (places.size or table.missing.any() or table.empty)
     is_lone = places.size == 1 and table.agreeing.any()  # one row fits some edit by chance
@@ -114,7 +112,8 @@ def _comparison(table: Table, causes: bool) -> Comparison:
     if causes and places.size:
         cause_list = () if is_lone else find_causes(table)
         note = "one row alone disagrees: no cause is named" if is_lone else "no cause was found"
-        notes += () if cause_list else (note,)
+        notes += [] if cause_list else [note]
+    notes += [f"columns not compared: {' '.join(others)}"] if others else []
     return Comparison(
         passed=bool(is_complete),
         rows=table.size,
@@ -123,7 +122,7 @@ def _comparison(table: Table, causes: bool) -> Comparison:
         results=tuple(name for name in table.names if name not in table.empty),
         causes=cause_list,
         disagreements=_disagreements(table, bool(cause_list)),
-        notes=notes,
+        notes=tuple(notes),
         differing_rows=tuple((places[:MAX_ROWS_LISTED] + 1).tolist()),
     )
 
@@ -135,7 +134,7 @@ def _disagreements(table: Table, explained: bool) -> tuple[Disagreement, ...]:
     )
     quantities = {} if explained else quantities_of(columns_of(table, rows))
     disagreements = []
-    for name in [name for name, misfit in table.misfit.items() if misfit.any()]:
+    for name in table.disagreeing:
         misfit = table.misfit[name]
         relative = table.relative_difference(name)
         worst = int(relative.argmax())

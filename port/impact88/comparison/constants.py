@@ -101,7 +101,7 @@ def _statement_constants(sample: "Sample", program: Program, part: str) -> list[
     for site in sites(program.name, part):
         (target, *twins), (expression, *others) = site.targets, site.expressions
         if not (twins or others or expression in VELOCITIES):
-            value = evaluate(expression, program.scope(target))
+            value = evaluate(expression, program.scope(target, program.computed))
             if np.ndim(value) < 2 and np.size(value) > 1 and value.dtype == float:
                 places.setdefault(target, {})[site.holes[0]] = expression
     edits = []

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .spellings import COLUMNS, VELOCITIES, Statement, names_in, spelling
+from .spellings import VELOCITIES, Statement, spelling
 
 Floats = NDArray[np.float64]
 Values = dict[str, Any]
@@ -111,29 +111,19 @@ class Program:
         written: dict[str, str] = {}
         for edit in edits:
             written |= edit.changes
-        self.statements = [
-            s._replace(text=written[s.target], reads=names_in(written[s.target]))
-            if s.target in written
-            else s
-            for s in self.statements
-        ]
+        self.statements = [s._replace(text=written.get(s.target, s.text)) for s in self.statements]
         read = {n[2:]: evaluate(t, columns) for n, t in written.items() if n[0] == "<"}
         self.shown = [{key: [text] for key, text in edit.changes.items()} for edit in edits]
-        equations = self.spelling.equations
-        self.linear = frozenset({*equations, "slip", "hold"}) if equations else frozenset()
-        self._first = 0
+        self.linear = {*self.spelling.equations, "slip", "hold"}
         self._plans: dict[tuple[frozenset[str], ...], list[Statement]] = {}
         texts = {statement.target: [statement.text] for statement in self.statements}
-        self.computed = self._advance({**columns, **read}, COLUMNS, texts)
-        if velocities := {n: columns[n] for n in VELOCITIES if n in columns}:
-            self._first = self.spelling.results
-            self._plans.clear()
-            self.computed = self._advance({**self.computed, **velocities}, velocities, {})
+        self.computed = self._advance({**columns, **read, FITTED: (np.nan,)}, columns, texts)
+        if columns.keys() >= {*VELOCITIES}:
+            del self.statements[: self.spelling.results]
         self.base = self._show(self.computed, {})
 
-    def scope(self, target: str) -> Values:
+    def scope(self, target: str, names: Values) -> Values:
         """Return the names that a statement's expression may read, with their values."""
-        names = self.computed
         return {**names, **self.basis} if target in self.linear else names
 
     def propagate(self, values: Mapping[str, Any]) -> Values:
@@ -158,25 +148,23 @@ class Program:
         ``changes`` has the alternatives of each place, and ``constants`` the value of `FITTED` in
         each of them.
         """
+        scope = {**self.columns, FITTED: constants}
         columns = {
-            key[2:]: self._values(texts, self.columns, constants)
-            for key, texts in changes.items()
-            if key[0] == "<"
+            key[2:]: self._values(texts, scope) for key, texts in changes.items() if key[0] == "<"
         }
-        names = self._advance({**self.computed, **columns}, columns, changes, constants)
-        return self._show(names, changes, constants)
+        names = {**self.computed, FITTED: constants, **columns}
+        return self._show(self._advance(names, columns, changes), changes)
 
-    def _values(
-        self, texts: Sequence[str], scope: Mapping[str, Any], constants: Iterable[Any]
-    ) -> Any:
-        """Return the values of alternatives."""
-        values = [evaluate(t, {**scope, FITTED: x}) for t, x in zip(texts, constants, strict=True)]
+    def _values(self, texts: Sequence[str], scope: Values) -> Any:
+        """Return the values of alternatives, each with its constant."""
+        constants = zip(texts, scope[FITTED], strict=True)
+        values = [evaluate(text, {**scope, FITTED: constant}) for text, constant in constants]
         return values[0] if len(values) == 1 else stack(values, self.size)
 
     def _plan(self, kept: frozenset[str], edited: frozenset[str]) -> list[Statement]:
         """Return the statements to compute where names are changed, and statements edited."""
         dirty, plan = {*kept}, []
-        for statement in self.statements[self._first :]:
+        for statement in self.statements:
             target = statement.target
             is_stale = target in edited or not dirty.isdisjoint(statement.reads)
             if is_stale and target not in kept:
@@ -184,13 +172,7 @@ class Program:
                 dirty.update(target.split(", "))
         return plan
 
-    def _advance(
-        self,
-        names: Values,
-        kept: Iterable[str],
-        changes: Alternatives,
-        constants: Iterable[Any] = (np.nan,),
-    ) -> Values:
+    def _advance(self, names: Values, kept: Iterable[str], changes: Alternatives) -> Values:
         """Compute what is edited or follows from names that have other values, and keep these."""
         key = (frozenset(kept), frozenset(changes))
         if key not in self._plans:
@@ -200,22 +182,16 @@ class Program:
             if statement.is_solution:
                 names.update(self._solve([names[name] for name in self.spelling.equations]))
                 continue
-            scope = {**names, **self.basis} if target in self.linear else names
+            scope = self.scope(target, names)
             texts = changes.get(target)
-            names[target] = (
-                self._values(texts, scope, constants) if texts else evaluate(statement.text, scope)
-            )
+            names[target] = self._values(texts, scope) if texts else evaluate(statement.text, scope)
         return names
 
-    def _show(
-        self, names: Values, changes: Alternatives, constants: Iterable[Any] = (np.nan,)
-    ) -> Values:
+    def _show(self, names: Values, changes: Alternatives) -> Values:
         """Return computed values, with results as they are shown."""
         for shown in (*self.shown, changes):
             results = {
-                key[2:]: self._values(texts, names, constants)
-                for key, texts in shown.items()
-                if key[0] == ">"
+                key[2:]: self._values(texts, names) for key, texts in shown.items() if key[0] == ">"
             }
             names = {**names, **results} if results else names
         return names

@@ -1,14 +1,15 @@
 """Grade a table: results that agree, that lose digits, that disagree, that are missing."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from ..errors import quoted
-from .agreement import COMPARED, LOST_DIGITS, Bools, elimination_bounds, reference
+from .agreement import LOST_DIGITS, Bools, elimination_bounds, reference
 from .evaluation import Floats
 from .numbers import numbers, units
+from .spellings import COMPARED
 
 NO_DIGIT_LEFT = 1e-3  # of the scene's size: a difference that rounding makes, and tells nothing
 
@@ -37,6 +38,8 @@ class Table:
         How far off the table's numbers are.
     misfit : dict of str to ndarray of bool
         Where a result disagrees.
+    disagreeing : list of str
+        Results that disagree.
     elimination : dict of str to ndarray
         What rounding may change in rows that disagree, where elimination finds the velocities.
     wrong, agreeing, lost, unstable, missing, surplus : ndarray of bool
@@ -86,7 +89,8 @@ class Table:
             self.misfit[name] = off & ~(difference <= close)
             self.lost |= off & ~self.misfit[name]
         self._excuse_elimination()
-        self.wrong: Bools = np.any(list(self.misfit.values()), 0)
+        self.wrong = self.differing(self.names)
+        self.disagreeing = [name for name in self.names if self.misfit[name].any()]
         answer, expectation = (
             np.isfinite(np.array([results[name] for name in self.names]))
             for results in (self.theirs, self.ours)
@@ -100,7 +104,7 @@ class Table:
         """Take differences that elimination may cause for digits lost."""
         self.elimination = {name: np.zeros(self.size) for name in self.names}
         self.unstable = np.zeros(self.size, bool)
-        rows = np.flatnonzero(np.any(list(self.misfit.values()), 0))
+        rows = np.flatnonzero(self.differing(self.names))
         if not rows.size:
             return
         bounds = elimination_bounds({n: c[rows] for n, c in self.scene.items()}, self.names)
@@ -117,12 +121,16 @@ class Table:
         self.lost[rows[within & ~sizable]] = True
         self.unstable[rows[within & sizable]] = True
 
+    def differing(self, names: Iterable[str]) -> Bools:
+        """Return the rows in which one of some results disagrees."""
+        return sum((self.misfit[name] for name in names), np.zeros(self.size, bool))
+
     def relative_difference(self, name: str) -> Floats:
         """Return differences where a result disagrees, relative to the largest of its kind."""
         size = np.fmax(self.reference.scales[name], np.abs(self.theirs[name]))
         return np.where(self.misfit[name], self.difference[name] / size, 0.0)
 
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> list[str]:
         """Return what was not compared, and digits that are lost, in words."""
         notes = [f"{name} has no number in any row" for name in self.empty]
         counts = {
@@ -139,4 +147,4 @@ class Table:
             name = next(n for n in self.names if not np.isfinite(self.theirs[n][row]))
             cell = quoted(str(self.columns[name][row] or ""))
             notes.append(f"the first of them is row {row + 1}: {name} = {cell}; expected a number")
-        return tuple(notes)
+        return notes

@@ -13,9 +13,9 @@ import numpy as np
 
 from ..errors import UserError, quoted
 from ..files import packaged_bytes, write_folder
-from .agreement import COMPARED, Bools
+from .agreement import Bools
 from .numbers import EMPTY, numbers, units
-from .spellings import COLUMNS, VELOCITIES
+from .spellings import COLUMNS, COMPARED, VELOCITIES
 
 FROZEN_ID = "1988.1"
 """Under this id no answer changes; other vectors get another id."""

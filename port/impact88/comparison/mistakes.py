@@ -13,7 +13,7 @@ from .mutants import describe_names
 from .numbers import spread
 from .rows import mistake_of_table
 from .spellings import COLUMNS, VELOCITIES
-from .types import Cause
+from .types import MAX_ROWS_LISTED, Cause
 
 MAX_SAMPLE = 80  # rows of each kind in a search, and as many kept out of it
 ROUNDINGS = 30.0  # bounds by which a mistake's numbers may be off
@@ -32,9 +32,8 @@ def find_causes(table: Table) -> tuple[Cause, ...]:
     """Return the mistakes behind the rows that disagree."""
     diagnosis = Diagnosis(table)
     if says := mistake_of_table(table, diagnosis.limits):
-        names = tuple(name for name, misfit in table.misfit.items() if misfit.any())
         total = int(table.wrong.sum())
-        return (Cause(says, "", names, total, total),)
+        return (Cause(says, "", tuple(table.disagreeing), total, total),)
     return diagnosis.causes()
 
 
@@ -105,7 +104,7 @@ class Diagnosis:
 
     def _samples(self, names: Sequence[str]) -> list[Sample]:
         """Return the rows of a search, and those kept out of it."""
-        wrong = np.any([self.table.misfit[n] for n in names], 0)
+        wrong = self.table.differing(names)
         steady = self.table.agreeing & ~self.table.lost
         kinds = [spread(np.flatnonzero(kind), 2 * MAX_SAMPLE) for kind in (wrong, steady)]
         return [
@@ -127,7 +126,7 @@ class Diagnosis:
         columns = columns_of(self.table, rows)
         if {*VELOCITIES}.isdisjoint(names):
             table = self.table
-            wrong = np.any([table.misfit[n][rows] for n in self.velocities], 0)
+            wrong = table.differing(self.velocities)[rows]
             for n in self.velocities:
                 velocities[n] = np.where(wrong, table.theirs[n][rows], table.ours[n][rows])
             program = Program("impulses", {**columns, **velocities}, wanted=names)
@@ -138,7 +137,7 @@ class Diagnosis:
             {**columns, **velocities},
             {n: self.table.theirs[n][rows] for n in names},
             limits,
-            np.any([self.table.misfit[n][rows] for n in names], 0),
+            self.table.differing(names)[rows],
         )
 
     def _given(self, candidate: Candidate, held_out: Sample, names: Sequence[str]) -> list[str]:
@@ -152,22 +151,22 @@ class Diagnosis:
 
         ``judged``: the results that it must give; ``explained``: those that it is the cause of.
         """
-        misfit = self.table.misfit
-        wrong = np.flatnonzero(np.any([misfit[n] for n in judged], 0))
-        count = 0
+        wrong = np.flatnonzero(self.table.differing(judged))
+        rest: list[int] = []
         for start in range(0, wrong.size, BLOCK):
-            sample = self._sample(wrong[start : start + BLOCK], judged)
-            count += int(candidate.gives(sample).sum())
-        names = tuple(n for n in self.names if n in explained and misfit[n].any())
+            rows = wrong[start : start + BLOCK]
+            rest += (rows[~candidate.gives(self._sample(rows, judged))] + 1).tolist()
+        names = tuple(n for n in self.table.disagreeing if n in explained)
         where = str(candidate.condition or "")
         return Cause(
             candidate.text,
             where,
             names,
-            count,
+            wrong.size - len(rest),
             wrong.size,
             candidate.alternatives,
             describe_names(candidate.edits[0], candidate.name),
+            tuple(rest[:MAX_ROWS_LISTED]),
         )
 
 

@@ -14,9 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..names import RESULTS
 from .evaluation import Edit, Program, evaluate, stack, statement_of
-from .spellings import COLUMNS, VELOCITIES, Statement, names_in, parse, spelling
+from .spellings import COLUMNS, COMPARED, VELOCITIES, Statement, names_in, parse, spelling
 
 SLOT = re.compile(r"SLOT\d+")
 RANK_MODEL = 0  # a law or a convention with a name
@@ -92,7 +91,7 @@ class Site(NamedTuple):
         """Return the statements' values, one alternative for each option."""
         values = {}
         for target, hole in zip(self.targets, self.holes, strict=True):
-            scope = program.scope(target)
+            scope = program.scope(target, program.computed)
             parts = _Parts(scope)
             slots = {
                 slot: stack([row[place].value(parts) for row in self.options], program.size)
@@ -333,8 +332,7 @@ def models() -> tuple[Edit, ...]:
                     target, expression = assignment.strip().split(" = ", 1)
                     changes[side + target] = expression
             edits.append(Edit(says, changes, RANK_MODEL))
-    results = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
-    return (*edits, *_columns("<", COLUMNS[:-1], "as read"), *_columns(">", results, "as shown"))
+    return (*edits, *_columns("<", COLUMNS[:-1], "as read"), *_columns(">", COMPARED, "as shown"))
 
 
 def _columns(side: str, names: tuple[str, ...], how: str) -> Iterator[Edit]:

@@ -16,7 +16,7 @@ from ..program.replay import replay, unpack
 from ..program.run import run
 from ..program.scene import Scene
 from . import agreement
-from .agreement import COMPARED
+from .spellings import COMPARED
 
 SCHEMA = "impact88/oracle/3"
 DIGITS = 30

@@ -21,12 +21,11 @@ def mistake_of_table(table: Table, limits: Mapping[str, Floats]) -> str:
 
     ``limits``: how far off the numbers of a program with a mistake may be.
     """
-    names = [name for name, misfit in table.misfit.items() if misfit.any()]
     if _are_other_rows(table, limits):
         return "the results are those of other rows: the order of the rows differs"
-    if all(_is_cut(table, name) for name in names):
+    if all(_is_cut(table, name) for name in table.disagreeing):
         return "the last digit is cut or rounded down, not rounded"
-    if all(_is_single(table, name) for name in names):
+    if all(_is_single(table, name) for name in table.disagreeing):
         return "results are computed or written in single precision (float32)"
     return ""
 

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+MAX_ROWS_LISTED = 1000  # in a cause or comparison; their counts have all
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -23,6 +25,8 @@ class Cause:
         Other mistakes that give the same numbers.
     names : str
         What the names stand for with which the edit is described.
+    unexplained_rows : tuple of int
+        The first rows that disagree and that it does not explain, from 1.
 
     Examples
     --------
@@ -38,6 +42,7 @@ class Cause:
     of: int
     alternatives: tuple[str, ...] = ()
     names: str = ""
+    unexplained_rows: tuple[int, ...] = ()
 
     @property
     def unexplained(self) -> int:

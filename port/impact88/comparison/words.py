@@ -1,5 +1,6 @@
 """A comparison in words, as JSON and as a JUnit report."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
@@ -14,8 +15,14 @@ def cause_sentences(cause: "Cause") -> list[str]:
     lines = [f"{cause.edit}{where}", *([f"  with {cause.names}"] if cause.names else [])]
     lines += [f"  or: {other}" for other in cause.alternatives]
     rows = f"explains {cause.rows} of {cause.of} rows that disagree in {', '.join(cause.results)}"
-    rest = f"; {cause.unexplained} remain unexplained" if cause.unexplained else ""
-    return [*lines, f"  {rows}{rest}"]
+    if cause.unexplained:
+        rows += f"; {cause.unexplained} remain unexplained (row {_first(cause.unexplained_rows)})"
+    return [*lines, f"  {rows}"]
+
+
+def _first(items: Sequence[Any]) -> str:
+    """Return the first of some items."""
+    return ", ".join(map(str, items[:5])) + ", ..." * (len(items) > 5)
 
 
 def disagreement_line(item: "Disagreement") -> str:
@@ -43,8 +50,7 @@ def as_text(comparison: "Comparison") -> str:
         results = (f"  {disagreement_line(item)}" for item in comparison.disagreements)
         lines += ["", "Results that disagree", *results]
     for reason, ids in comparison.kit.get("failed", {}).items():
-        shown = ", ".join(ids[:5]) + ", ..." * (len(ids) > 5)
-        lines.append(f"{reason}: {len(ids)} of the vectors ({shown})")
+        lines.append(f"{reason}: {len(ids)} of the vectors ({_first(ids)})")
     if kit := comparison.kit:
         lines.append(
             f"kit {kit['id']}: {kit['passed']} of {kit['vectors']} vectors pass; "

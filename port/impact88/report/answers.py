@@ -316,17 +316,18 @@ def numbers_of(
     numbers = {name: case.view.shown(name, value) for name, value in values.items()}
     rules = {name: quantity(name).unit for name in numbers}
     for name, value in numbers.items():
+        rule = rules[name]
         ends = tuple(sorted(case.view.shown(name, x, False) for x in intervals.get(name, ())))
-        if ends and rules[name] == ANGLE and math.isfinite(value):  # a heading is within one turn
+        if ends and rule == ANGLE and math.isfinite(value):  # a heading is within one turn
             turns = 360.0 * round((value - sum(ends) / 2) / 360.0)
             ends = ends[0] + turns, ends[1] + turns
-        group = [x for n, x in numbers.items() if rules[n] == rules[name]]
-        decimals = decimals_in(rules[name], group, ends[1] - ends[0] if ends else 0.0)
+        group = [x for n, x in numbers.items() if rules[n] == rule]
+        decimals = decimals_in(rule, group, ends[1] - ends[0] if ends else 0.0)
         text = round_number(value, decimals)
         rows[name] = Row(
             name,
             case.view.meaning(name),
-            case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(rules[name], ""),
+            case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(rule, ""),
             text,
             clock(value) if text and "PDOF" in name else "",
             " .. ".join(round_number(end, decimals) for end in ends),

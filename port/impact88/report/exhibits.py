@@ -30,17 +30,17 @@ class Exhibit:
         The number of the printout in its file.
     result : Verification
         The verdict, and the text, as given or as read from the picture.
-    page : PictureVerification or None
-        The page, if it was read from a picture.
     digest : str
         SHA-256 of the file.
+    page : PictureVerification or None
+        The page, if it was read from a picture.
     """
 
     file: str
     number: int
     result: Verification
+    digest: str
     page: PictureVerification | None = None
-    digest: str = ""
 
     @property
     def picture(self) -> Picture | None:
@@ -58,10 +58,9 @@ class Exhibit:
             stop = min(finding.stop, end)
             if place <= finding.start <= stop:
                 yield text[place : finding.start], "", ""
-                is_adverse = VERDICTS[finding.kind] is Verdict.DIFFERS
                 look = (
                     "differs"
-                    if is_adverse
+                    if VERDICTS[finding.kind] is Verdict.DIFFERS
                     else "foreign"
                     if finding.kind is Kind.FOREIGN
                     else "doubt"
@@ -104,10 +103,10 @@ def examine(
         pictures = library("impact88.pictures", "pictures", "a picture")
         pages = pictures.verify_picture(data, name, scene=given)
         return [
-            Exhibit(name, k, page.verification, page, digest) for k, page in enumerate(pages, 1)
+            Exhibit(name, k, page.verification, digest, page) for k, page in enumerate(pages, 1)
         ]
     try:
         results = verify(data, given, listing or None)
     except UserError as error:
         raise UserError(str(error).removeprefix("text: "), name) from None
-    return [Exhibit(name, k, result, None, digest) for k, result in enumerate(results, 1)]
+    return [Exhibit(name, k, result, digest) for k, result in enumerate(results, 1)]

@@ -16,15 +16,21 @@ from ...names import FINAL_VELOCITIES, RESULTS, SCENE
 NAMES = ("impulses", "frame", "closed", "equations", "bodies", "trial", "engine")
 COLUMNS = tuple(SCENE)
 VELOCITIES = tuple(FINAL_VELOCITIES)
+COMPARED = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
+"""Results that are numbers of the scene, not of its equations."""
 
 
 class Statement(NamedTuple):
-    """``target = text``, about ``subject``; ``reads`` are the names in the text."""
+    """``target = text``, about ``subject``."""
 
     target: str
     text: str
     subject: str
-    reads: frozenset[str]
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The names in the text."""
+        return names_in(self.text)
 
     @property
     def is_solution(self) -> bool:
@@ -58,9 +64,24 @@ def names_in(text: str) -> frozenset[str]:
     return frozenset(node.id for node in ast.walk(parse(text)) if isinstance(node, ast.Name))
 
 
-def _read(name: str) -> list[Statement]:
-    """Return the statements of a file."""
-    source = resources.files(__name__).joinpath(f"{name}.txt").read_text("utf-8")
+def _source(name: str) -> str:
+    """Return the text of a file of statements."""
+    return resources.files(__name__).joinpath(f"{name}.txt").read_text("utf-8")
+
+
+def _results_source() -> str:
+    """Return the text of ``results``, and for results that are not there that of their formulas,
+    which take nothing but columns and results."""
+    source = _source("results")
+    for name in COMPARED[len(VELOCITIES) :]:
+        for line in GIVERS[name].tree.body if f"\n{name} = " not in source else ():
+            if isinstance(line, ast.Assign):
+                source += f"{ast.unparse(line)}  # {RESULTS[name].meaning}\n"
+    return source
+
+
+def _statements(source: str) -> list[Statement]:
+    """Return the statements of a text."""
     lines = source.splitlines()
     statements = []
     for node in ast.parse(source).body:
@@ -68,27 +89,15 @@ def _read(name: str) -> list[Statement]:
         target = ast.unparse(node.targets[0]).strip("()")
         text = ast.unparse(node.value)
         subject = lines[(node.end_lineno or 1) - 1].partition("  # ")[2]
-        statements.append(Statement(target, text, subject, names_in(text)))
-    return statements
-
-
-def _read_results() -> list[Statement]:
-    """Return the statements of ``results``, and of results that are not there those of their
-    formulas, which take nothing but columns and results."""
-    statements = _read("results")
-    written = {"COND", "STATUS", *VELOCITIES, *(statement.target for statement in statements)}
-    for name in (name for name in RESULTS if name not in written):
-        for line in GIVERS[name].tree.body:
-            if isinstance(line, ast.Assign):
-                text, target = ast.unparse(line.value), ast.unparse(line.targets[0])
-                statements.append(Statement(target, text, RESULTS[name].meaning, names_in(text)))
+        statements.append(Statement(target, text, subject))
     return statements
 
 
 @cache
 def spelling(name: str) -> Spelling:
     """Return the spelling of a name in `NAMES`."""
-    reading, own, results = _read("reading"), _read(name), _read_results()
+    sources = (_source("reading"), _source(name), _results_source())
+    reading, own, results = map(_statements, sources)
     targets = {statement.target for statement in own}
     results = [s for s in results if s.target != "MUC" or "muc" in targets]
     equations = tuple(s.target for s in own if s.target.startswith("eq"))
