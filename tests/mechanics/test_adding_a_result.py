@@ -47,7 +47,6 @@ print(impact88.accelerated, "PX", impact88.names.RESULTS["PX"].unit)
 
 
 def insert(path, before, text):
-    """Insert text into a file before a line that is there once."""
     content = path.read_text(encoding="utf-8")
     assert content.count(before) == 1, (path, before)
     path.write_text(content.replace(before, text + before), encoding="utf-8")

@@ -38,7 +38,6 @@ def kinds(text: str) -> set[Kind]:
 
 
 def with_row(start: str, *rows: str) -> str:
-    """Return the page with other rows in place of the one that starts so."""
     lines = PAGE.split("\n")
     at = next(k for k, line in enumerate(lines) if line.strip().startswith(start))
     return "\n".join([*lines[:at], *rows, *lines[at + 1 :]])
