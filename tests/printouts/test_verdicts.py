@@ -353,6 +353,11 @@ def test_a_row_lost_or_twice_is_named(start: str) -> None:
     assert single(with_row(start, row(start), other)).verdict is Verdict.DIFFERS
 
 
+def test_rows_of_another_printout_accuse_nothing() -> None:
+    other = SAMPLES[3]
+    assert single(BODY + other[other.index("VAX=") :]).verdict is Verdict.INCOMPLETE
+
+
 def test_another_number_behind_a_damaged_label_is_not_a_doubt() -> None:
     text = BODY.replace("DA=", "0A=").replace("LOSS", "L0SS").replace("UX=", "UK=")
     assert single(text.replace("MA= 143.5", "NN- 143.5")).verdict is Verdict.AS_READ
@@ -421,6 +426,8 @@ def test_a_number_beside_a_reply_is_not_the_replys(note: str) -> None:
         ("MA= 143.5", "MA= 143.6", Verdict.DIFFERS),
         ("VAX= -13.263", "VAX= 1) -13.263", Verdict.INCOMPLETE),
         ("VAX= -13.263", "VAX= -13.264", Verdict.DIFFERS),
+        ("VAY= 3.449", "VAY= 3.4 [torn]", Verdict.INCOMPLETE),
+        ("IA= 3728 IB= 1961", "IA= 3728 IB= 19]]", Verdict.INCOMPLETE),
     ],
 )
 def test_marks_at_a_number_accuse_nothing(old: str, new: str, verdict: Verdict) -> None:

@@ -15,17 +15,7 @@ LEADING = 40  # rows from line to line
 
 
 def draw(text: str, style: int = 0, margin: int = 60) -> np.ndarray:
-    """Return a page as grey values, one glyph of a style in each cell.
-
-    Parameters
-    ----------
-    text : str
-        The page.
-    style : int
-        Index of the known typeface.
-    margin : int
-        White pixels around the text.
-    """
+    """Return a page as grey values: glyphs of a known typeface, with white pixels around."""
     characters, glyphs = known_glyphs()
     lines = text.split("\n")
     columns = max(map(len, lines))
