@@ -318,7 +318,7 @@ def test_summaries_say_what_is_not_there() -> None:
     def summary(text: str) -> str:
         return words.write(single(text), brief=True)[1]
 
-    assert "all else that was read" in summary(PAGE)
+    assert "all else from the first row" in summary(PAGE)
     assert "everything else is what the program prints" in summary(with_row("UX="))
     assert "everything else" not in summary(with_row("UX=").replace("DA=", "0A="))
     assert "--scene" in summary(BODY[BODY.index("INITIAL") :])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from itertools import accumulate, groupby
 from typing import NamedTuple
 
 ROWS = (
@@ -104,6 +105,10 @@ CELLS = tuple(
 SLOT_CELLS = {cell.name: j for j, cell in enumerate(CELLS) if cell.kind == "slot"}
 SLOT_CELLS |= dict.fromkeys(ANGLES, SLOT_CELLS["ANGLES"])
 """The cell of each number; the five angles share one."""
+_STARTS = [*accumulate(cell.first for cell in CELLS)]
+_CELLS_OF_WORDS = (j for j, cell in enumerate(CELLS) if cell.kind == "word")
+WORD_CELLS = [[*word] for _, word in groupby(_CELLS_OF_WORDS, _STARTS.__getitem__)]
+"""The cells of each word or mark of the page."""
 
 
 class PrintedChar(NamedTuple):

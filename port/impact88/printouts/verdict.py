@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
-from itertools import accumulate, groupby
 from types import MappingProxyType
 from typing import Any
 
@@ -32,6 +31,7 @@ from .page import (
     ROWS,
     SLOT_CELLS,
     TITLES,
+    WORD_CELLS,
     print_page,
     printed_rows,
 )
@@ -45,10 +45,6 @@ MIN_LETTERS = 2
 """Letters in which another word differs: one may be a misprint."""
 WORDS = {*re.findall("[A-Z]+", re.sub("{.*?}", "", " ".join(ROWS)))}
 """The words of the page's labels."""
-_STARTS = [*accumulate(cell.first for cell in CELLS)]
-_CELLS_OF_WORDS = (j for j, cell in enumerate(CELLS) if cell.kind == "word")
-WORD_CELLS = [[*word] for _, word in groupby(_CELLS_OF_WORDS, _STARTS.__getitem__)]
-"""The cells of each word or mark of the page."""
 
 
 def judge(
@@ -321,11 +317,11 @@ class PageComparison:
         """Return the findings, with numbers that differ left open where they prove nothing.
 
         On a page read exactly elsewhere, another word in a label's place differs. Numbers are open
-        where an input was not read, or may have lost digits or be several numbers; where more of
-        them differ than an alteration explains, while an input is in doubt, a number was not read
-        or a machine read the page; and on such a page unless each is one digit for another in which
-        the reader does not err elsewhere. A lost sign or point is a doubt there. An angle is open
-        if that with which it enters as a sum is in doubt.
+        where an input was not read, or may have lost digits, or was read otherwise in doubt; where
+        a row lost its end; where more of them differ than an alteration explains, while an input is
+        in doubt, a number was not read or a machine read the page; and on such a page unless each
+        is one digit for another, and not the same in both. An angle is open if that with which it
+        enters as a sum is in doubt.
         """
         words = [finding for finding in findings if finding.kind is Kind.MISREAD]
         names = {finding.name for finding in words}

@@ -17,7 +17,8 @@ TITLES = {
 }
 SUMMARIES = {
     Verdict.IDENTICAL: (
-        "all {count} printed numbers, and all else that was read, are what the program prints"
+        "all {count} printed numbers, and all else from the first row to the last, are what the "
+        "program prints"
     ),
     Verdict.AS_READ: (
         "what was read exactly of {count} printed numbers is what the program prints; the rest is "
